@@ -22,6 +22,7 @@
 #include "can/bus_load.hpp"
 #include "can/few_motors.hpp"
 #include "can/first_light.hpp"
+#include "can/level_sole.hpp"
 #include "can/linked_wiggle.hpp"
 #include "files/nearest_name.hpp"
 #include "option_checks.hpp"
@@ -39,18 +40,20 @@ enum ExitCode { kOk = 0, kProblems = 1, kNotTold = 3 };
 constexpr int kOffCycles = 5;  // until the drive's answer shows what it is told
 
 constexpr const char* kFooter = R"(
-For a robot that hangs in its gantry, limp, with a hard-wired emergency stop at hand. scan and watch switch every drive off and
-only listen. zero, enable and wiggle touch one motor. One program drives a bus: while pmg_controller runs, they refuse, and watch
+For a robot that hangs in its gantry, limp, with a hard-wired emergency stop at hand. scan, watch and level switch every drive off and
+only listen. zero, enable and wiggle touch one motor, or those of one linkage. One program drives a bus: while pmg_controller runs, they refuse, and watch
 listens without asking, as dump always does. replay needs no bus.
 
 Example:
   pmg_bus scan --robot z1
   pmg_bus watch --robot z1
   pmg_bus wiggle left_knee --robot z1
+  pmg_bus level left_ankle_pitch --robot z1
   pmg_bus dump --robot z1 >first.log
   pmg_bus replay first.log --robot z1
 
-Exit codes: 0 all is well, 1 a drive has a problem, 2 bad input, or a bus that can't be opened, 3 wiggle could not tell direction or gear.
+Exit codes: 0 all is well, 1 a drive has a problem, 2 bad input, or a bus that can't be opened, 3 wiggle or level could
+not tell direction or gear.
 docs/how-to/hal.md has the order of a bring-up.)";
 
 struct Arguments {
@@ -210,6 +213,8 @@ model::Hanging hangs(Buses& buses, const OneMotor& one, const JointVector& q, ca
 
 int told(const can::Verdict& verdict) {
   using Tells = can::Verdict::Tells;
+  std::cout << verdict.text << '\n';
+  for (const std::string& line : verdict.look) std::cout << "  " << line << '\n';
   return verdict.tells == Tells::kAgrees ? kOk : (verdict.tells == Tells::kWrong ? kProblems : kNotTold);
 }
 
@@ -223,11 +228,10 @@ int wiggle_one(Buses& buses, const OneMotor& one, const Arguments& arguments, co
   const can::Wiggle result =
       can::wiggle(buses.robot, q, one.bus, one.motor, one.link, {.by_rad = by_rad, .gain_share = arguments.gain_share},
                   tick, interrupted, hanging, plumb);
-  const can::Verdict verdict = can::verdict(result);
-  std::cout << fmt::format("asked {:.2f} deg, moved {:.2f} deg; holds {:.2f} Nm, the model {:.2f} Nm: {}\n",
-                           result.asked_rad / kRadPerDegree, result.moved_rad / kRadPerDegree, result.held_Nm,
-                           result.model_Nm, verdict.text);
-  return told(verdict);
+  std::cout << fmt::format(
+      "asked {:.2f} deg, moved {:.2f} deg; holds {:.2f} Nm, the model {:.2f} Nm: ", result.asked_rad / kRadPerDegree,
+      result.moved_rad / kRadPerDegree, result.held_Nm, result.model_Nm);
+  return told(can::verdict(result));
 }
 
 /// The joint's linkage: all of its joints, one after the other.
@@ -248,32 +252,54 @@ int wiggle_rods(Buses& buses, const OneMotor& one, const Arguments& arguments, c
     std::cout << fmt::format("{}: asked {:.2f} deg, moved {:.2f} deg\n", way.joint, way.asked_rad / kRadPerDegree,
                              way.moved_rad / kRadPerDegree);
   }
-  const can::Verdict verdict = can::verdict(buses.robot, q, one.bus, one.motor, ways, hanging);
-  std::cout << verdict.text << '\n';
-  for (const std::string& line : verdict.look) std::cout << "  " << line << '\n';
-  return told(verdict);
+  return told(can::verdict(buses.robot, q, one.bus, one.motor, ways, hanging));
 }
+
+/// The robot before anything moves: its joints, and where down is.
+struct AtRest {
+  AtRest(Buses& buses, const OneMotor& one, const Arguments& arguments, const std::function<void()>& tick)
+      : q(posture(buses, silent)) {
+    std::vector<std::string> others = silent;
+    std::erase(others, arguments.joint);
+    if (!others.empty()) {
+      std::cout << fmt::format("{} of the other motors don't answer ({}, ...): the model has their joints standing\n",
+                               others.size(), others.front());
+    }
+    for (std::size_t b = 0; b < buses.setup.buses.size(); ++b) {
+      const can::BusSetup& bus = buses.setup.buses[b];
+      if (bus.imu) imu.emplace(buses.robot, &bus == &one.bus ? nullptr : buses.links[b].get());
+    }
+    hanging = hangs(buses, one, q, plumb(), tick, arguments.held);
+  }
+  can::Plumb* plumb() { return imu ? &*imu : nullptr; }
+
+  std::vector<std::string> silent;  // joints
+  JointVector q;
+  std::optional<can::Plumb> imu;
+  model::Hanging hanging;
+};
 
 int wiggle(const Arguments& arguments) {
   Buses buses(arguments.robot);
   const OneMotor one = find(buses, arguments.joint);
-  std::vector<std::string> silent;
-  const JointVector q = posture(buses, silent);
-  std::erase(silent, arguments.joint);
-  if (!silent.empty()) {
-    std::cout << fmt::format("{} of the other motors don't answer ({}, ...): the model has their joints standing\n",
-                             silent.size(), silent.front());
-  }
   const std::function<void()> tick = bus_tick();
-  std::optional<can::Plumb> plumb;
-  for (std::size_t b = 0; b < buses.setup.buses.size(); ++b) {
-    const can::BusSetup& bus = buses.setup.buses[b];
-    if (bus.imu) plumb.emplace(buses.robot, &bus == &one.bus ? nullptr : buses.links[b].get());
+  AtRest rest(buses, one, arguments, tick);
+  return can::linked_joints(one.bus, one.motor).empty()
+             ? wiggle_one(buses, one, arguments, rest.q, tick, rest.hanging, rest.plumb())
+             : wiggle_rods(buses, one, arguments, rest.q, tick, rest.hanging, rest.plumb());
+}
+
+int level(const Arguments& arguments) {
+  Buses buses(arguments.robot);
+  const OneMotor one = find(buses, arguments.joint);
+  const AtRest rest(buses, one, arguments, bus_tick());
+  std::vector<std::string> joints = can::linked_joints(one.bus, one.motor);
+  joints.push_back(arguments.joint);
+  for (const std::string& joint : joints) {
+    if (std::ranges::find(rest.silent, joint) != rest.silent.end())
+      throw std::runtime_error(joint + " has no angle; expected one: `pmg_bus scan` says why");
   }
-  const model::Hanging hanging = hangs(buses, one, q, plumb ? &*plumb : nullptr, tick, arguments.held);
-  can::Plumb* const plumbed = plumb ? &*plumb : nullptr;
-  return can::linked_joints(one.bus, one.motor).empty() ? wiggle_one(buses, one, arguments, q, tick, hanging, plumbed)
-                                                        : wiggle_rods(buses, one, arguments, q, tick, hanging, plumbed);
+  return told(can::verdict_of_level_sole(buses.robot, rest.q, one.bus, one.motor, rest.hanging.down_B));
 }
 
 int dump(const Arguments& arguments) { return apps::dump_buses(arguments.robot, arguments.for_s); }
@@ -316,6 +342,8 @@ int main(int argc, char** argv) {
       ->check(apps::in_range(0.05, 1.0))
       ->capture_default_str();
   wiggling->add_option("--held", arguments.held, "the link that the gantry holds; not given: robot.yaml's torso_link");
+  joint(command("level", "the sole below this joint lies level: tell how the motors are connected; moves nothing",
+                level));
   command("replay", "what the backend says of a recording in candump's format", replay)
       ->add_option("recording", arguments.recording, "a file that dump or candump -L wrote")
       ->required();

@@ -35,6 +35,10 @@ using Angles = typename drives::RodLinkage<N>::Angles;
 template <int N>
 using Jacobian = typename drives::RodLinkage<N>::Jacobian;
 
+std::string inverted_words(const drives::MotorSetup& motor) {
+  return fmt::format("`direction` of {}'s motor is wrong", motor.joint);
+}
+
 /// All of them, robot.yaml's first.
 template <int N>
 std::vector<Arrangement<N>> arrangements(const BusSetup& bus, const drives::LinkedMotors<N>& linked) {
@@ -51,8 +55,7 @@ std::vector<Arrangement<N>> arrangements(const BusSetup& bus, const drives::Link
         one.crank[i] = swapped != 0 ? kN - 1 - i : i;
         const bool inverted = (signs >> i & 1U) != 0;
         one.sign[i] = inverted ? -1.0 : 1.0;
-        if (inverted)
-          words.push_back(fmt::format("`direction` of {}'s motor is wrong", bus.motors[linked.motors[i]].joint));
+        if (inverted) words.push_back(inverted_words(bus.motors[linked.motors[i]]));
       }
       one.words = fmt::format("{}", fmt::join(words, ", and "));
       all.push_back(one);
@@ -388,23 +391,14 @@ Verdict judge_ways(const Judge<N>& judge, const std::vector<Arrangement<N>>& all
       possible.push_back(&all[i]);
   }
   std::vector<std::string> words;
-  Verdict verdict;
+  for (const Arrangement<N>* one : possible) words.push_back(one->words);
+  Verdict verdict =
+      verdict_of(words, {.name = "load and base", .advice = "compare the ways with the eye", .seems = "it moves"});
   for (const Arrangement<N>* one : possible) {
-    if (one->words.empty()) continue;
-    words.push_back(one->words);
-    verdict.look.push_back(fmt::format("if {}: {}", one->words, judge.look(*one, ways)));
+    if (one->words.empty() && verdict.tells != Tells::kNotAll) continue;
+    const std::string what = one->words.empty() ? "as robot.yaml has it" : "if " + one->words;
+    verdict.look.push_back(fmt::format("{}: {}", what, judge.look(*one, ways)));
   }
-  const bool described = possible.front()->words.empty();
-  if (described && words.empty()) return {Tells::kAgrees, "motors, rods and directions agree with the model"};
-  if (described) {
-    verdict.tells = Tells::kNotAll;
-    verdict.text = fmt::format("load and base can't tell it from {} other arrangement{}: compare the ways with the eye",
-                               words.size(), words.size() > 1 ? "s" : "");
-    verdict.look.insert(verdict.look.begin(), fmt::format("as robot.yaml has it: {}", judge.look(all.front(), ways)));
-    return verdict;
-  }
-  verdict.tells = Tells::kWrong;
-  verdict.text = fmt::format("it moves as if {}", fmt::join(words, "; or as if "));
   return verdict;
 }
 
@@ -440,17 +434,52 @@ Verdict verdict(const model::RobotModel& robot, const JointVector& q, const BusS
   return said;
 }
 
+std::vector<double> cranks_at(const BusSetup& bus, const drives::MotorSetup& motor, const JointVector& q) {
+  std::vector<double> cranks_rad = {q[motor.index]};
+  with_linkage(bus, motor, [&](const auto& linked, auto size) {
+    Angles<size()> joints;
+    for (std::size_t j = 0; j < linked.motors.size(); ++j)
+      joints[static_cast<Eigen::Index>(j)] = q[bus.motors[linked.motors[j]].index];
+    const auto cranks = linked.linkage.motor_angles(joints);
+    if (!cranks)
+      throw std::runtime_error(fmt::format("no cranks' angles belong to {} at {:.3f} rad",
+                                           fmt::join(linked_joints(bus, motor), " and "),
+                                           fmt::join(joints.begin(), joints.end(), " and ")));
+    cranks_rad = {cranks->begin(), cranks->end()};
+  });
+  return cranks_rad;
+}
+
+std::vector<Connection> connections(const BusSetup& bus, const drives::MotorSetup& motor,
+                                    const std::vector<double>& cranks_rad) {
+  std::vector<Connection> all;
+  if (with_linkage(bus, motor, [&](const auto& linked, auto size) {
+        for (const auto& one : arrangements<size()>(bus, linked)) {
+          const auto q = posture(linked, arranged<size()>(one, cranks_rad), kWayMargin_rad);
+          if (q) all.push_back({one.words, {q->begin(), q->end()}});
+        }
+      }))
+    return all;
+  return {{"", cranks_rad}, {inverted_words(motor), {-cranks_rad[0]}}};
+}
+
 std::string arranged_within_ranges(const BusSetup& bus, const drives::MotorSetup& motor,
                                    const std::vector<double>& cranks_rad) {
   std::vector<std::string> words;
-  with_linkage(bus, motor, [&](const auto& linked, auto size) {
-    for (const auto& one : arrangements<size()>(bus, linked)) {
-      if (!posture(linked, arranged<size()>(one, cranks_rad), kWayMargin_rad)) continue;
-      words.push_back(one.words);
-    }
-  });
+  for (const Connection& one : connections(bus, motor, cranks_rad)) words.push_back(one.words);
   if (words.empty() || words.front().empty()) return {};
   return fmt::format("{}", fmt::join(words, "; or "));
+}
+
+Verdict verdict_of(const std::vector<std::string>& possible, const Evidence& evidence) {
+  using Tells = Verdict::Tells;
+  std::vector<std::string> others = possible;
+  std::erase(others, "");
+  if (others.size() == possible.size())
+    return {Tells::kWrong, fmt::format("{} as if {}", evidence.seems, fmt::join(others, "; or as if "))};
+  if (others.empty()) return {Tells::kAgrees, "motors, rods and directions agree with the model"};
+  return {Tells::kNotAll, fmt::format("{} can't tell it from {} other arrangement{}: {}", evidence.name, others.size(),
+                                      others.size() > 1 ? "s" : "", evidence.advice)};
 }
 
 }  // namespace pmg::can

@@ -48,6 +48,31 @@ Verdict verdict(const model::RobotModel& robot, const JointVector& q, const BusS
                 const drives::MotorSetup& motor, const std::vector<LinkedWay>& ways,
                 const model::Hanging& hanging = {});
 
+/// A way to connect a linkage's motors, or a joint's own motor, and where the joints then are.
+struct Connection {
+  std::string words;              ///< against robot.yaml; empty: as it has them
+  std::vector<double> joint_rad;  ///< of linked_joints, or of the motor's joint
+};
+
+/// Angles of the cranks, or of the joint that its motor turns alone, at these joints' [rad], all as robot.yaml has
+/// them. Throws std::runtime_error when no cranks' angles belong to them.
+std::vector<double> cranks_at(const BusSetup& bus, const drives::MotorSetup& motor, const JointVector& q);
+
+/// All of them, robot.yaml's first; of a linkage those that put its joints into their ranges, or at most 0.2 rad
+/// beyond. cranks_rad: as cranks_at() has them.
+std::vector<Connection> connections(const BusSetup& bus, const drives::MotorSetup& motor,
+                                    const std::vector<double>& cranks_rad);
+
+/// What was looked at, in words.
+struct Evidence {
+  const char* name;    ///< "load and base", before "can't tell"
+  const char* advice;  ///< where they can't
+  const char* seems;   ///< "it moves", before "as if"
+};
+
+/// The verdict where the ways to connect the motors with these words are left, one or more.
+Verdict verdict_of(const std::vector<std::string>& possible, const Evidence& evidence);
+
 /// What puts the joints of this linkage into their ranges, if robot.yaml's arrangement doesn't: "the motors of
 /// left_ankle_pitch and left_ankle_roll are swapped". cranks_rad: as robot.yaml has them. Empty: robot.yaml's does.
 std::string arranged_within_ranges(const BusSetup& bus, const drives::MotorSetup& motor,

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <iterator>
 #include <stdexcept>
 #include <vector>
+
+#include "ethercat/coe_mail.hpp"
 
 namespace pmg::ethercat {
 
@@ -13,10 +15,6 @@ namespace {
 
 constexpr std::uint16_t kReceiveMap = 0x1600, kTransmitMap = 0x1A00, kReceiveAssigned = 0x1C12,
                         kTransmitAssigned = 0x1C13;
-// A mailbox's message (ETG.1000.4): length (2 bytes), address (2), channel (1), type and counter (1); then CANopen's
-// service in the upper 4 bits of 2 bytes (ETG.1000.6), then an SDO's 8 bytes.
-constexpr std::size_t kService = 7, kSdo = 8, kSdoBytes = 8;
-constexpr std::uint8_t kCoe = 0x03, kSdoRequest = 0x20, kSdoResponse = 0x30;
 constexpr int kOthers = 10;  // messages between request and answer: late answers, emergencies
 
 void map(drives::ObjectDictionary& dictionary, std::uint16_t assigned, std::uint16_t pdo,
@@ -47,20 +45,12 @@ std::optional<drives::canopen::SdoAnswer> CoeDictionary::ask(const drives::Messa
   std::uint8_t& counter = context_.slavelist[slave_].mbx_cnt;
   counter = static_cast<std::uint8_t>(counter % 7 + 1);
   std::fill(std::begin(mail), std::end(mail), std::uint8_t{0});
-  mail[0] = 2 + kSdoBytes;
-  mail[5] = static_cast<std::uint8_t>(kCoe | counter << 4U);
-  mail[kService] = kSdoRequest;
-  std::copy_n(request.data.begin(), kSdoBytes, mail + kSdo);
+  std::ranges::copy(mail_with_sdo(request, counter), std::begin(mail));
   const bool sent = ecx_mbxsend(&context_, slave_, &mail, EC_TIMEOUTTXM) > 0;
   for (int k = 0; sent && k < kOthers; ++k) {
     std::fill(std::begin(mail), std::end(mail), std::uint8_t{0});
     if (ecx_mbxreceive(&context_, slave_, &mail, EC_TIMEOUTRXM) <= 0) break;
-    const std::uint8_t service = mail[kService] & 0xF0U;
-    const std::size_t length = static_cast<std::size_t>(mail[0] | mail[1] << 8U);
-    // An abort is a request to end the transfer; some slaves send it as a response.
-    if ((mail[5] & 0x0FU) != kCoe || (service != kSdoResponse && service != kSdoRequest) || length < 2 + kSdoBytes)
-      continue;
-    const auto answer = drives::canopen::sdo_answer(drives::Message::of(0, std::span(mail + kSdo, kSdoBytes)));
+    const auto answer = sdo_in_mail(mail);
     if (!answer || answer->id.index != id.index || answer->id.subindex != id.subindex) continue;
     if (!answer->aborted) return answer;
     if (answer->value == drives::canopen::kAbortNoObject || answer->value == drives::canopen::kAbortNoSubindex)

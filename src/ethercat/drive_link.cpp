@@ -34,7 +34,8 @@ std::size_t DriveLink::receive(std::span<drives::Message> frames) noexcept {
 
 void DriveLink::take(std::size_t at, std::span<const std::uint8_t> inputs) noexcept {
   Drive& drive = drives_[at];
-  if (!drive.asked || inputs.size() <= kFirstInputs || in_count_ + 2 > in_.size()) return;
+  const bool whole = inputs.size() == drive_inputs(false) || inputs.size() == drive_inputs(true);
+  if (!drive.asked || !whole || in_count_ + 2 > in_.size()) return;
   drive.asked = false;
   in_[in_count_++] = drives::Message::of(drives::canopen::kTransmit1 + drive.node, inputs.first(kFirstInputs));
   in_[in_count_++] = drives::Message::of(drives::canopen::kTransmit2 + drive.node, inputs.subspan(kFirstInputs));

@@ -27,7 +27,8 @@ class DriveLink final : public can::Link {
   can::BusHealth health() const noexcept override { return can::BusHealth::kGood; }
   const can::LinkCounts& counts() const noexcept override { return counts_; }
 
-  /// A drive's inputs of this cycle; they are no answer without a SYNC before them.
+  /// A drive's inputs of this cycle; they are no answer without a SYNC before them, or of another
+  /// length than drive_inputs'.
   void take(std::size_t drive, std::span<const std::uint8_t> inputs) noexcept;
   void fill(std::size_t drive, std::span<std::uint8_t> outputs) const noexcept;
 

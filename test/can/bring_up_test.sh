@@ -100,6 +100,8 @@ begin rods
 described=rods step "a linkage" 0 'right_ankle_pitch +can1 +5 .*no fault  \(its crank\)' 'right_ankle_pitch +can1 +joint +-?[0-9.]+ deg' -- bus scan
 described=rods step "wiggle through a linkage" '0|3' '^right_ankle_pitch moves there and back, its linkage' 'right_ankle_pitch: asked 3.00 deg, moved [1-4]' -- \
   bus wiggle right_ankle_pitch --by 3
+described=rods step "a sole that may lie level" '0|1|3' '(puts the sole level|the sole lies as if|the sole.s angle can.t tell|agree with the model)' -- bus level right_ankle_pitch
+described=rods step "no sole" 2 'waist_pitch is above no sole; expected a joint of a leg' -- bus level waist_pitch
 end
 [ $failed = 0 ] && echo "the bring-up went as the page says"
 exit $failed

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "can/fault_rows.hpp"
+#include "can/linked_drives.hpp"
 #include "can/robot_stage.hpp"
 #include "can/tour_check.hpp"
 
@@ -41,6 +42,26 @@ void walk_and_count(Stage& stage, double walk_s) {
 TEST(CanRobot, ItWalksBehindEmulatedDrivesAndEveryFrameIsAnswered) {
   Stage stage(1, true);
   walk_and_count(stage, 4.0);
+}
+
+/// Both ankles have two motors each in the shank, which turn pitch and roll together.
+struct LinkedStage : StageOf<test::EmulatedRobot> {
+  explicit LinkedStage(std::uint64_t seed) : StageOf(seed, can::limits()) {
+    setup = can::load_drives(loaded.robot);
+    test::link_pair(setup, loaded.robot, "left_ankle_pitch", "left_ankle_roll", -0.25);
+    test::link_pair(setup, loaded.robot, "right_ankle_pitch", "right_ankle_roll", -0.25);
+    auto [host, far] = test::link_pairs<test::MemoryLink>(setup.buses.size());
+    robot.emplace(setup, loaded.robot, *world, std::move(host), std::move(far));
+  }
+};
+
+TEST(LinkedRobot, ItWalksOnAnklesOfTwoMotorsEach) {
+  LinkedStage stage(1);
+  const RunOutcome outcome = stage.run(walking(2.0, 4.0));
+  EXPECT_FALSE(outcome.fell);
+  EXPECT_TRUE(outcome.faults.empty());
+  fmt::print("{}\n", line("linked", outcome.tracking));
+  EXPECT_LT(outcome.tracking.lin_vel_mae_m_s, 0.3);
 }
 
 // Campaign: 31 motors at 500 Hz for a minute, and what the bus thread's part of it costs.

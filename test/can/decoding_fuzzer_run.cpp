@@ -1,19 +1,10 @@
-// The fuzzer's entry with a compiler that has no libFuzzer: seeded random inputs, mutated from whole exchanges. Exit
-// code 0 when nothing was found; what is found ends the program.
+// The fuzzer with a compiler that has no libFuzzer: inputs mutated from whole exchanges.
 #include <array>
-#include <cstdint>
-#include <cstdio>
-#include <cstdlib>
-#include <random>
-#include <vector>
 
-// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+#include "fuzz/seeded_runs.hpp"
 
 int main(int argc, char** argv) {
-  const int runs = argc > 1 ? std::atoi(argv[1]) : 20'000;
-  std::mt19937_64 random(1);
-  for (int run = 0; run < runs; ++run) {
+  return pmg::test::seeded_runs(argc, argv, [](std::mt19937_64& random) {
     std::vector<std::uint8_t> bytes(random() % 400);
     for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
     for (std::size_t at = 0; at + 12 <= bytes.size(); at += 12) {  // most records are replies
@@ -29,8 +20,6 @@ int main(int argc, char** argv) {
       bytes[at + 3] = static_cast<std::uint8_t>(id);
       if (random() % 2 == 0) bytes[at + 4] = 0x37;  // operation enabled
     }
-    LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
-  }
-  std::printf("%d inputs, nothing found\n", runs);
-  return 0;
+    return bytes;
+  });
 }

@@ -1,6 +1,7 @@
 // Z1 in its gantry behind emulated drives, limp and at rest: where first light begins.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -28,9 +29,11 @@ class HangingStage {
     drives_->feel(sensed_);
     drives_->serve();
     drives_->tick(acting_);
+    if (hands) hands(acting_);
     world_.step(acting_);
   }
 
+  std::function<void(model::JointCommand&)> hands;  ///< hold the robot's joints somewhere; empty: nobody's
   can::DriveSetup setup_;
   sim::World world_;
   Links host_;

@@ -9,12 +9,14 @@
 #include <algorithm>
 #include <array>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "can/hanging_stage.hpp"
 #include "can/linked_drives.hpp"
 #include "can/roll_call.hpp"
+#include "refusal.hpp"
 
 namespace pmg::can {
 namespace {
@@ -23,42 +25,11 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 using Tells = Verdict::Tells;
-
-/// How somebody connected the motors, against robot.yaml.
-struct Connected {
-  bool swapped = false;
-  std::array<bool, 2> inverted{};
-};
-
-std::string words_of(const Connected& truth, const std::string& first, const std::string& second) {
-  std::string words = truth.swapped ? fmt::format("the motors of {} and {} are swapped", first, second) : "";
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (!truth.inverted[i]) continue;
-    words +=
-        (words.empty() ? "" : ", and ") + fmt::format("`direction` of {}'s motor is wrong", i == 0 ? first : second);
-  }
-  return words;
-}
-
-std::vector<Connected> all_ways_to_connect() {
-  std::vector<Connected> all;
-  for (const bool swapped : {false, true}) {
-    for (const bool first : {false, true}) {
-      for (const bool second : {false, true}) all.push_back({swapped, {first, second}});
-    }
-  }
-  return all;
-}
-
-can::DriveSetup linked(const std::string& first, const std::string& second, double below_m) {
-  can::DriveSetup setup = can::load_drives(test::z1());
-  test::link_pair(setup, test::z1(), first, second, below_m);
-  return setup;
-}
-const can::BusSetup& bus_of(const can::DriveSetup& setup) {
-  return *std::ranges::find_if(setup.buses, [](const can::BusSetup& bus) { return !bus.parallel.empty(); });
-}
-const drives::MotorSetup& first_motor(const can::BusSetup& bus) { return bus.motors[bus.parallel[0].motors[0]]; }
+using test::all_ways_to_connect;
+using test::bus_of;
+using test::Connected;
+using test::first_motor;
+using test::words_of;
 
 /// What a robot without friction shows whose motors are connected so, computed from its model. base: it has an IMU.
 std::vector<LinkedWay> shown(const can::BusSetup& bus, const Connected& truth, const model::Hanging& hanging,
@@ -66,20 +37,8 @@ std::vector<LinkedWay> shown(const can::BusSetup& bus, const Connected& truth, c
   using Angles = drives::RodLinkage<2>::Angles;
   const drives::LinkedMotors<2>& linked = bus.parallel[0];
   const auto motor = [&](std::size_t i) -> const drives::MotorSetup& { return bus.motors[linked.motors[i]]; };
-  const auto turned = [&](const Angles& motors) {  // (motors as robot.yaml has them) <=> (cranks)
-    Angles cranks;
-    for (Eigen::Index i = 0; i < 2; ++i)
-      cranks[truth.swapped ? 1 - i : i] = (truth.inverted[static_cast<std::size_t>(i)] ? -1.0 : 1.0) * motors[i];
-    return cranks;
-  };
-  const auto told = [&](const Angles& cranks) {
-    Angles motors;
-    for (Eigen::Index i = 0; i < 2; ++i)
-      motors[i] = (truth.inverted[static_cast<std::size_t>(i)] ? -1.0 : 1.0) * cranks[truth.swapped ? 1 - i : i];
-    return motors;
-  };
   const auto end = [&](const Angles& asked) {
-    const Angles motors = *linked.linkage.motor_angles(asked), cranks = turned(motors);
+    const Angles motors = *linked.linkage.motor_angles(asked), cranks = test::cranks_of(truth, motors);
     const Angles q = *linked.linkage.joint_angles(cranks, Angles::Zero());
     JointVector whole = test::z1().q_stand();
     for (std::size_t i = 0; i < 2; ++i) whole[motor(i).index] = q[static_cast<Eigen::Index>(i)];
@@ -94,7 +53,7 @@ std::vector<LinkedWay> shown(const can::BusSetup& bus, const Connected& truth, c
     for (std::size_t i = 0; i < 2; ++i)
       joints[static_cast<Eigen::Index>(i)] =
           model::gravity_load(test::z1(), motor(i).joint, whole, now).holding_Nm(q[static_cast<Eigen::Index>(i)]);
-    const Angles held = told(linked.linkage.jacobian(cranks, q).transpose().inverse() * joints);
+    const Angles held = test::motors_of(truth, linked.linkage.jacobian(cranks, q).transpose().inverse() * joints);
     shown.torque_Nm = {held.begin(), held.end()};
     return shown;
   };
@@ -117,7 +76,7 @@ std::vector<LinkedWay> shown(const can::BusSetup& bus, const Connected& truth, c
 }
 
 TEST(LinkedVerdict, EveryWayToConnectAWaistsMotorsIsNamed) {
-  const can::DriveSetup setup = linked("waist_roll", "waist_pitch", 0.12);
+  const can::DriveSetup setup = test::z1_with("waist_roll", "waist_pitch", 0.12);
   const can::BusSetup& bus = bus_of(setup);
   const model::Hanging hanging{.held_link = test::z1().torso_link};
   for (const Connected& truth : all_ways_to_connect()) {
@@ -132,7 +91,7 @@ TEST(LinkedVerdict, EveryWayToConnectAWaistsMotorsIsNamed) {
 
 // Without an IMU, a robot that hangs obliquely: what the load can't tell is left to the eye, and nothing false is said.
 TEST(LinkedVerdict, OfAWaistWithoutAnImuNothingFalseIsSaid) {
-  const can::DriveSetup setup = linked("waist_roll", "waist_pitch", 0.12);
+  const can::DriveSetup setup = test::z1_with("waist_roll", "waist_pitch", 0.12);
   const can::BusSetup& bus = bus_of(setup);
   const model::Hanging hanging{.down_B = Eigen::Vector3d(0.2, 0.15, -1.0).normalized(),
                                .held_link = test::z1().torso_link};
@@ -151,7 +110,7 @@ TEST(LinkedVerdict, OfAWaistWithoutAnImuNothingFalseIsSaid) {
 
 // A foot weighs less than its joints' friction: the eye gets what each arrangement would look like.
 TEST(LinkedVerdict, OfAnAnkleTheEyeIsToldWhatSwappedAndInvertedMotorsWouldLookLike) {
-  const can::DriveSetup setup = linked("left_ankle_pitch", "left_ankle_roll", -0.25);
+  const can::DriveSetup setup = test::z1_with("left_ankle_pitch", "left_ankle_roll", -0.25);
   const can::BusSetup& bus = bus_of(setup);
   const Verdict verdict =
       can::verdict(test::z1(), test::z1().q_stand(), bus, first_motor(bus), shown(bus, {}, {}, false));
@@ -168,7 +127,7 @@ TEST(LinkedVerdict, OfAnAnkleTheEyeIsToldWhatSwappedAndInvertedMotorsWouldLookLi
 }
 
 TEST(LinkedVerdict, AGearThatIsWrongIsNoArrangementAndAShortWayIsSaid) {
-  const can::DriveSetup setup = linked("waist_roll", "waist_pitch", 0.12);
+  const can::DriveSetup setup = test::z1_with("waist_roll", "waist_pitch", 0.12);
   const can::BusSetup& bus = bus_of(setup);
   const model::Hanging hanging{.down_B = Eigen::Vector3d(0.2, 0.15, -1.0).normalized(),
                                .held_link = test::z1().torso_link};
@@ -188,7 +147,7 @@ TEST(LinkedVerdict, AGearThatIsWrongIsNoArrangementAndAShortWayIsSaid) {
 }
 
 TEST(LinkedRollCall, CranksThatNoPostureHasAndPosturesBeyondARangeAreNamed) {
-  const can::DriveSetup setup = linked("left_ankle_pitch", "left_ankle_roll", -0.25);
+  const can::DriveSetup setup = test::z1_with("left_ankle_pitch", "left_ankle_roll", -0.25);
   const can::BusSetup& bus = bus_of(setup);
   const drives::LinkedMotors<2>& ankle = bus.parallel[0];
   const auto said = [&](double first_rad, double second_rad) {
@@ -215,11 +174,11 @@ TEST(LinkedRollCall, CranksThatNoPostureHasAndPosturesBeyondARangeAreNamed) {
 /// Z1 in its gantry whose waist has a linkage, connected so.
 class LinkedLight : public testing::TestWithParam<Connected>, protected test::HangingStage {
  protected:
-  LinkedLight() : HangingStage(connected(GetParam())), described_(linked("waist_roll", "waist_pitch", 0.12)) {}
+  LinkedLight() : HangingStage(connected(GetParam())), described_(test::z1_with("waist_roll", "waist_pitch", 0.12)) {}
   static can::DriveSetup connected(const Connected& truth) {
-    can::DriveSetup setup = linked("waist_roll", "waist_pitch", 0.12);
+    can::DriveSetup setup = test::z1_with("waist_roll", "waist_pitch", 0.12);
     const auto bus = std::ranges::find_if(setup.buses, [](const can::BusSetup& one) { return !one.parallel.empty(); });
-    test::connect_otherwise(*bus, test::z1(), truth.swapped, truth.inverted);
+    test::connect_otherwise(*bus, test::z1(), truth);
     return setup;
   }
   Verdict wiggled() {
@@ -246,6 +205,46 @@ TEST_P(LinkedLight, TheWaistsMotorsMoveTogetherAndHowTheyAreConnectedIsNamed) {
   EXPECT_EQ(verdict.text,
             words.empty() ? "motors, rods and directions agree with the model" : "it moves as if " + words);
   for (const std::string& line : verdict.look) fmt::print("{}\n", line);
+}
+
+/// Z1 in its gantry, each motor of its left ankle beside the other in the shank.
+class LinkedAnkle : public testing::Test, protected test::HangingStage {
+ protected:
+  LinkedAnkle() : HangingStage(test::z1_with("left_ankle_pitch", "left_ankle_roll", -0.25)) {}
+  std::vector<LinkedWay> wiggled(const WiggleOptions& options) {
+    return wiggle_linked(test::z1(), sensed_.q, setup_.buses[0], first_motor(setup_.buses[0]), *host_[0], options,
+                         [this] { tick(); }, {});
+  }
+  std::string refusal(const WiggleOptions& options) {
+    return test::refusal_by<std::runtime_error>([&] { wiggled(options); });
+  }
+};
+
+TEST_F(LinkedAnkle, BothJointsMoveThroughTheRodsAndTheEyeIsAsked) {
+  const std::vector<LinkedWay> ways = wiggled({.by_rad = 0.1, .gain_share = 1.0});
+  ASSERT_THAT(ways, SizeIs(2));
+  for (const LinkedWay& way : ways) {
+    EXPECT_NEAR(way.moved_rad, way.asked_rad, 0.3 * way.asked_rad) << way.joint;
+    EXPECT_NEAR(way.moved_down_rad, way.asked_down_rad, 0.3 * way.asked_down_rad) << way.joint;
+  }
+  const Verdict verdict = can::verdict(test::z1(), sensed_.q, setup_.buses[0], first_motor(setup_.buses[0]), ways);
+  EXPECT_EQ(verdict.tells, Tells::kNotAll) << verdict.text;
+  EXPECT_THAT(
+      verdict.look,
+      testing::Contains(testing::StartsWith("if the motors of left_ankle_pitch and left_ankle_roll are swapped: ")));
+}
+
+TEST_F(LinkedAnkle, WhatBlocksItAndAStartBeyondARangeSwitchBothMotorsOff) {
+  EXPECT_THAT(refusal({.by_rad = 0.1, .gain_share = 1.0, .effort_share = -0.1}),
+              HasSubstr("Nm at its crank; expected"));
+  tick();
+  for (const std::size_t m : {4U, 5U}) EXPECT_FALSE(drives_->drive(0, m).enabled());
+  drives_->drive(0, 4).turn_rad = 1.2;
+  EXPECT_THAT(refusal({}), testing::AnyOf(HasSubstr("expected a start within their ranges"),
+                                          HasSubstr("no angles of these joints belong to their cranks'")));
+  drives_->drive(0, 4).turn_rad = 0.0;
+  drives_->drive(0, 5).silent = true;
+  EXPECT_THAT(refusal({}), HasSubstr("left_ankle_roll (can0, node 6) does not answer"));
 }
 
 INSTANTIATE_TEST_SUITE_P(AsDescribed, LinkedLight, testing::Values(Connected{}));
