@@ -1,18 +1,26 @@
 // The policy's file alone determines the controller's composition.
 #include "control/control_setup.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <sstream>
+#include <stdexcept>
 #include <string>
 
 #include "control/fixtures.hpp"
+#include "files/config_error.hpp"
 #include "generator_core/allocation_count.hpp"
+#include "model/bundle.hpp"
+#include "model/clip_library_file.hpp"
 #include "policy/descriptor_file.hpp"
 #include "policy/linear_policy.hpp"
 
@@ -230,6 +238,24 @@ class ARobotOfTwoStyles : public ::testing::Test {
   ControlSetup with(const std::string& policy, const std::filesystem::path& clips = {}) const {
     return {.robot = robot_.path().string(), .clips = clips, .policy = policy};
   }
+  /// Every row of the own posture clips has this joint's angle less so much.
+  void lower(const std::string& joint, double by_rad) const {
+    for (const char* name : model::kPostureNames) {
+      const std::filesystem::path file = own_clips_ / (std::string(name) + ".csv");
+      std::ifstream before(file);
+      std::string text, line, field;
+      std::getline(before, line);
+      text = line + '\n';
+      const auto column = std::ranges::count(line.substr(0, line.find(joint)), ',');
+      while (std::getline(before, line)) {
+        std::istringstream fields(line);
+        for (std::ptrdiff_t i = 0; std::getline(fields, field, ','); ++i)
+          text += fmt::format("{}{:.17g}", i > 0 ? "," : "", std::stod(field) - (i == column ? by_rad : 0.0));
+        text += '\n';
+      }
+      std::ofstream(file) << text;
+    }
+  }
   test::TemporaryFolder robot_;
   std::filesystem::path own_clips_ = robot_.path() / "policies/person/clips";
 };
@@ -246,6 +272,35 @@ TEST_F(ARobotOfTwoStyles, RunsAPolicyOnTheClipsBesideIt) {
   // Both policies without a name of their own: robot.yaml's, and none.
   for (const char* name : {"", "none"}) EXPECT_EQ(load_control(with(name)).clips, robot_.path() / "clips") << name;
   EXPECT_NE(person.bundle, load_control(with("pmg")).bundle);
+}
+
+TEST_F(ARobotOfTwoStyles, StandsAsThePolicysOwnClipsStand) {
+  constexpr double kLower_rad = 0.02;  // of both knees, at every command of the posture clips
+  lower("left_knee", kLower_rad);
+  lower("right_knee", kLower_rad);
+  const LoadedControl common = load_control(with("pmg"));
+  const model::RobotModel robot = load_robot(with("person"));
+  JointVector expected = common.robot.q_stand();
+  for (const char* knee : {"left_knee", "right_knee"}) expected[robot.joint_index.at(knee)] -= kLower_rad;
+  EXPECT_LT((robot.q_stand() - expected).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_EQ(robot.q_sit_down()[robot.joint_index.at("left_knee")], robot.q_stand()[robot.joint_index.at("left_knee")]);
+  EXPECT_GT(std::abs(robot.standing_height_m - common.robot.standing_height_m), 1e-5);
+  // The policy beside them was trained on other clips, and says so; another's clips named by hand don't move the robot.
+  EXPECT_THROW(load_control(with("person")), std::invalid_argument);
+  EXPECT_EQ(load_robot(with("person", robot_.path() / "clips")).q_stand(), common.robot.q_stand());
+  const LoadedControl none = load_control({.robot = robot_.path().string(), .clips = {}, .policy = "none"});
+  EXPECT_EQ(none.robot.q_stand(), common.robot.q_stand());
+}
+
+TEST_F(ARobotOfTwoStyles, RefusesOwnClipsThatStandOnOneBentLeg) {
+  lower("left_knee", 0.02);
+  try {
+    load_robot(with("person"));
+    FAIL();
+  } catch (const files::ConfigError& error) {
+    EXPECT_THAT(error.what(),
+                AllOf(HasSubstr("bend.csv"), HasSubstr("left_knee"), HasSubstr("mirror image of right_knee")));
+  }
 }
 
 TEST_F(ARobotOfTwoStyles, RefusesAPolicyOnTheOthersClips) {

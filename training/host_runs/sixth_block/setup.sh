@@ -1,0 +1,9 @@
+#!/usr/bin/env bash
+# second call: unpack everything in /tmp/pmg
+set -euo pipefail
+cd /tmp/pmg
+cat all.part.* | tar xf -
+mkdir -p site_tmp; tar xJf site.tar.xz & tar xJf host.tar.xz; tar xJf eval.tar.xz; tar xzf late.tgz; wait
+. ./env.sh
+nvidia-smi --query-gpu=name,memory.used --format=csv,noheader; nproc
+python3 -c "import torch,warp,mujoco_warp,onnx,numpy;print(torch.__version__,numpy.__version__,warp.config.version)"
