@@ -138,7 +138,7 @@ int simulate(Arguments arguments) {
 }
 
 int export_mjcf(const Arguments& arguments) {
-  const model::RobotModel robot = model::load_robot(model::find_robot(arguments.control.robot));
+  const model::RobotModel robot = control::load_robot(arguments.control);
   const std::string text = sim::mjcf(robot, sil::world_with_noise(arguments.seed, arguments.gantry));
   std::ofstream out(arguments.export_mjcf);
   out << text;

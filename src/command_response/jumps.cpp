@@ -92,7 +92,7 @@ bool JumpTest::all_survived() const {
 }
 
 void run_jumps(JumpTest& test, const evaluation::Supervision& supervision) {
-  const model::RobotModel robot = model::load_robot(model::find_robot(test.evaluated.candidate.control.robot));
+  const model::RobotModel robot = control::load_robot(test.evaluated.candidate.control);
   test.runs.assign(static_cast<std::size_t>(test.seeds), {});
   evaluation::for_each_piece(test.runs.size(), supervision, [&](std::size_t i) {
     const std::uint64_t seed = i + 1;

@@ -148,7 +148,7 @@ bool SteadyTest::all_reached() const {
 }
 
 void run_steady(SteadyTest& test, const evaluation::Supervision& supervision) {
-  const model::RobotModel robot = model::load_robot(model::find_robot(test.candidate.control.robot));
+  const model::RobotModel robot = control::load_robot(test.candidate.control);
   test.limits = robot.command_limits;
   if (test.commands.empty()) test.commands = held_commands(test.limits);
   test.results.assign(test.commands.size(), {});

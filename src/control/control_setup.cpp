@@ -14,6 +14,7 @@
 #include "hal/bus_cycle.hpp"
 #include "model/bundle.hpp"
 #include "model/clip_library_file.hpp"
+#include "model/standing_posture.hpp"
 #include "policy/onnx_policy.hpp"
 #include "policy/velocity_policy.hpp"
 
@@ -158,6 +159,9 @@ void for_each_option(Options& tick, Visit&& visit) {
   visit("/foot_load/lost_s", tick.foot_load.lost_s);
   visit("/foot_load/found_share", tick.foot_load.found_share);
   visit("/foot_load/found_s", tick.foot_load.found_s);
+  visit("/foot_load/lost_walking_share", tick.foot_load.lost_walking_share);
+  visit("/foot_load/least_walking_share", tick.foot_load.least_walking_share);
+  visit("/foot_load/walking_s", tick.foot_load.walking_s);
   visit("/foot_load/held_share", tick.foot_load.held_share);
   visit("/foot_load/filter_s", tick.foot_load.filter_s);
   visit("/foot_load/change_per_sqrt_s", tick.foot_load.change_per_sqrt_s);
@@ -206,6 +210,14 @@ nlohmann::ordered_json tick_json(const TickOptions& tick) {
   return json;
 }
 
+/// The clips that the chosen policy brings, if it does and the setup names no others.
+std::optional<fs::path> own_clips(const ControlSetup& setup, const model::RobotModel& robot) {
+  fs::path own = place_of_policy(chosen_policy(setup, robot), robot);
+  if (!setup.clips.empty() || is_descriptor(own)) return std::nullopt;
+  own = own.replace_extension() / "clips";
+  return fs::is_directory(own) ? std::optional(std::move(own)) : std::nullopt;
+}
+
 }  // namespace
 
 fs::path chosen_clips(const ControlSetup& setup, const model::RobotModel& robot) {
@@ -215,14 +227,20 @@ fs::path chosen_clips(const ControlSetup& setup, const model::RobotModel& robot)
     throw std::invalid_argument(fmt::format("--clips {}: the policy of {} steps by itself and plays none",
                                             setup.clips.string(), policy.string()));
   }
-  if (!setup.clips.empty()) return setup.clips;
-  const fs::path own = fs::path(policy).replace_extension() / "clips";
-  return fs::is_directory(own) ? own : robot.directory / "clips";
+  return own_clips(setup, robot).value_or(setup.clips.empty() ? robot.directory / "clips" : setup.clips);
+}
+
+model::RobotModel load_robot(const ControlSetup& setup) {
+  model::RobotModel robot = model::load_robot(model::find_robot(setup.robot));
+  const std::optional<fs::path> own = own_clips(setup, robot);
+  if (!own) return robot;
+  const JointVector q_stand = model::standing_posture(*own, robot);
+  return model::standing_as(std::move(robot), q_stand);
 }
 
 LoadedControl load_control(const ControlSetup& setup) {
   LoadedControl loaded;
-  loaded.robot = model::load_robot(model::find_robot(setup.robot));
+  loaded.robot = load_robot(setup);
   loaded.clips = chosen_clips(setup, loaded.robot);
   loaded.options = tick_options(loaded.robot);
   loaded.policy_name = chosen_policy(setup, loaded.robot);

@@ -41,6 +41,10 @@ struct LoadedControl {
 /// such a one.
 std::filesystem::path chosen_clips(const ControlSetup& setup, const model::RobotModel& robot);
 
+/// The robot that a setup names. On a policy's own clips it stands as they stand at command 0, which may be another
+/// posture than robot.yaml's. Throws files::ConfigError.
+model::RobotModel load_robot(const ControlSetup& setup);
+
 /// Throws files::ConfigError or std::invalid_argument.
 LoadedControl load_control(const ControlSetup& setup);
 

@@ -64,7 +64,7 @@ void RobotExcitationPlayer::start() noexcept {
 }
 
 void RobotExcitationPlayer::watch(const model::RobotState& state, const model::JointCommand& in_force) noexcept {
-  feet_.update(state, in_force);
+  feet_.update(state, in_force, false);
   const double carried = feet_.share()[kLeft] + feet_.share()[kRight];
   carried_ = phase_ == Phase::kPlay ? carried_ + dt_s_ / plan_.average_s * (carried - carried_) : carried;
 }

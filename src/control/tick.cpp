@@ -203,7 +203,7 @@ void Tick::watch_feet(const model::RobotState& state) noexcept {
   result_.foot_load.reset();
   // A robot that begins to hang is brought to rest first: legs that are thrown about look as if they carried.
   if (hanging(result_.maker) && (!change_over_.done() || result_.mode == Mode::kWalk)) return;
-  feet_->update(state, result_.command);
+  feet_->update(state, result_.command, result_.reference.gain > 0.0);
   result_.foot_load = feet_->share();
   if (feet_->footing() == faults::Footing::kUnknown) return;
   const bool carry = feet_->footing() == faults::Footing::kStands;
@@ -411,7 +411,7 @@ bool Tick::sit_down(const TickInput& input, Mode before) noexcept {
       faults::allows_sit_down(result_.fault.code)) {
     begin_sit_down(input);
   } else if (sound && sit_down_.active(input.now_ns) && result_.fault.code != faults::FaultCode::kJointTorque) {
-    feet_->update(input.state, result_.command);  // by torques, which such a fault falsifies
+    feet_->update(input.state, result_.command, false);  // by torques, which such a fault falsifies
   }
   if (sit_down_.active(input.now_ns) && (!sound || feet_->footing() == faults::Footing::kHangs)) sit_down_.stop();
   if (!sit_down_.active(input.now_ns)) return false;

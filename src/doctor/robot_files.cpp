@@ -43,7 +43,7 @@ Findings check_robot_files(const control::ControlSetup& setup, const std::string
   Findings findings;
   model::RobotModel robot;
   if (!look(findings, "robot.yaml and URDF", kCorrect, [&] {
-        robot = model::load_robot(model::find_robot(setup.robot));
+        robot = control::load_robot(setup);
         return fmt::format("{}, {} joints, {:.1f} kg", robot.name, robot.joint_index.size(), robot.total_mass_kg);
       }))
     return findings;

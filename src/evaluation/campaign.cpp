@@ -58,7 +58,7 @@ CampaignRuns run_campaign(const std::vector<Case>& cases, const sil::Scenario& s
   campaign.runs.assign(cases.size(), std::vector<TrialResult>(static_cast<std::size_t>(seeds)));
   campaign.courses.resize(cases.size());
   std::vector<model::RobotModel> robots;
-  for (const Case& c : cases) robots.push_back(model::load_robot(model::find_robot(c.candidate.control.robot)));
+  for (const Case& c : cases) robots.push_back(control::load_robot(c.candidate.control));
   // seed by seed, so that an interruption leaves paired results
   for_each_piece(cases.size() * static_cast<std::size_t>(seeds), supervision, [&](std::size_t piece) {
     const std::size_t c = piece % cases.size(), seed = piece / cases.size();
@@ -80,7 +80,7 @@ CampaignRuns run_campaign(const std::vector<Case>& cases, const sil::Scenario& s
 
 std::string film_case(const Case& filmed, const sil::Scenario& scenario, const std::filesystem::path& file,
                       const Supervision& supervision) {
-  const model::RobotModel robot = model::load_robot(model::find_robot(filmed.candidate.control.robot));
+  const model::RobotModel robot = control::load_robot(filmed.candidate.control);
   std::optional<sil::Film> film;
   const auto shoot = [&](const sil::RunProgress& now, sim::World& world) {
     if (!film) film.emplace(world, file);

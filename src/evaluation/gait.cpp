@@ -145,7 +145,7 @@ work::Worth worth_of(const GaitTest& test) {
 }
 
 void run_gait(GaitTest& test, const Supervision& supervision) {
-  const model::RobotModel robot = model::load_robot(model::find_robot(test.evaluated.candidate.control.robot));
+  const model::RobotModel robot = control::load_robot(test.evaluated.candidate.control);
   const generator::JointRoles roles = generator::find_joint_roles(robot);
   model::BaseAttitude pelvis_of_reference(robot);
   PerFoot<FootRecording> recordings;

@@ -110,7 +110,7 @@ std::optional<bool> PushTest::reached() const {
 }
 
 void run_pushes(PushTest& test, const std::vector<double>& impulses_N_s, const Supervision& supervision) {
-  const model::RobotModel robot = model::load_robot(model::find_robot(test.evaluated.candidate.control.robot));
+  const model::RobotModel robot = control::load_robot(test.evaluated.candidate.control);
   const auto trials = static_cast<std::size_t>(test.trials);
   test.strengths.clear();
   for (const double impulse_N_s : impulses_N_s) {

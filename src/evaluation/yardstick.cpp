@@ -39,7 +39,7 @@ class IdealRobot {
 }  // namespace
 
 Yardstick yardstick(const Candidate& candidate, const sil::Scenario& scenario, const work::Progress& progress) {
-  const model::RobotModel robot = model::load_robot(model::find_robot(candidate.control.robot));
+  const model::RobotModel robot = control::load_robot(candidate.control);
   const GeneratorOptions options = gco::generator_options(robot);
   StepMeasure nothing(robot, scenario), follower(robot, scenario);
   IdealRobot still(robot.standing_height_m), moving(robot.standing_height_m);

@@ -64,6 +64,9 @@ std::vector<BaseMotion> base_of(const model::RobotModel& robot, const DynamicCli
 }
 
 constexpr double kClearance_m = 0.025;  // for a floor that isn't quite flat
+// At 0.7 to 0.85 of the swing. A forward clip with 8 mm there landed 5 % of a cycle early in the simulation, which took
+// the knee's correlation with the published mean from 0.97 to 0.78; with 15 mm feet landed in time.
+constexpr double kLanding_m = 0.010;
 
 std::string judge(const ClipReport& clip) {
   for (const GainReport& at : clip.gains) {
@@ -86,6 +89,9 @@ std::string judge(const ClipReport& clip) {
   }
   if (clip.gains.back().ground.clearance_m < kClearance_m) {
     return "feet are hardly lifted at full gain";
+  }
+  if (clip.gains.back().ground.landing_m < kLanding_m) {
+    return "a foot is near the ground too long before it lands";
   }
   return clip.joint_speed_share > 0.6 ? "a joint is too fast" : "";
 }

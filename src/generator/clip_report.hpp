@@ -30,7 +30,8 @@ struct ClipReport {
 /// Every dynamic clip at gains 0.1 to 1. A clip fails if one of these holds: double-support slip over 3 cm/s on average
 /// or 10 cm/s at the 95th percentile; stance feet more than 1 cm apart in height; mean velocity off by more than 0.05
 /// (m/s, rad/s); a swinging sole more than 6 mm below the ground, or at full gain less than 2.5 cm above it in mid
-/// swing; soles closer than 2 cm; a joint faster than 60 % of its limit.
+/// swing or 1 cm from 0.7 to 0.85 of it (lower, a leg that sags a little lands early); soles closer than 2 cm; a joint
+/// faster than 60 % of its limit.
 std::vector<ClipReport> report(const model::RobotModel& robot, const ClipLibrary& library);
 
 /// Agreement of a walking clip's left leg with a published mean; the offset counts.

@@ -1,5 +1,6 @@
 #include "generator/corner_synthesis.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -74,6 +75,7 @@ GaitTask corner_task(const Making& making, const Pair& pair, double period_s, co
   task.symmetric = false;
   task.sway_m = pair.first.task.sway_m + pair.second.task.sway_m;
   task.hike_rad = pair.first.task.hike_rad + pair.second.task.hike_rad;
+  task.height_m = std::min(pair.first.task.height_m, pair.second.task.height_m);
   task.clearance_m = 0.035;
   task.foot_gap_m = 0.025;
   task.flat_from = 0.25;
@@ -81,12 +83,12 @@ GaitTask corner_task(const Making& making, const Pair& pair, double period_s, co
   task.reference = reference;
   task.weights.reference = LegVector<double>::Constant(1.0);
   task.weights.bias = LegVector<double>::Constant(0.5);
-  task.weights.step_height = 1200.0;
+  task.weights.step_height = 4500.0;
   task.weights.step_height_free_m = 0.004;
   task.weights.velocity = 12.0;
   task.weights.velocity_yaw = 6.0;
   task.weights.height = 40.0;
-  task.weights.above_ground = 1000.0;
+  task.weights.above_ground = 2000.0;
   task.weights.limit = 300.0;
   // The generator's limit of n1 + n2 is 1.8 (kCornerReach).
   constexpr std::array<std::array<double, 3>, 9> kMixtures = {{{0.9, 0.9, 1.5},

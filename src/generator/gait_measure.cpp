@@ -127,7 +127,7 @@ GroundMeasure measure(const RobotLegs& legs, const LegTrajectory& trajectory, co
     states.push_back(evaluate(legs, trajectory, timing, k, base.empty() ? BaseMotion{} : base[k]));
   }
   GroundMeasure m;
-  m.clearance_m = m.lowest_swing_m = m.foot_gap_m = m.height_min_m = std::numeric_limits<double>::max();
+  m.clearance_m = m.landing_m = m.lowest_swing_m = m.foot_gap_m = m.height_min_m = std::numeric_limits<double>::max();
   m.height_max_m = std::numeric_limits<double>::lowest();
   for (const SampleState& s : states) {
     m.mean_velocity += s.base / static_cast<double>(n);
@@ -160,7 +160,9 @@ GroundMeasure measure(const RobotLegs& legs, const LegTrajectory& trajectory, co
         const double held = std::min(1.0, 2.0 * s.weight[f]);
         m.lowest_swing_m = std::min(m.lowest_swing_m, above < 0.0 ? (1.0 - held) * above : above);
         if (swing >= 0.3 && swing <= 0.7) {
-          m.clearance_m = std::min(m.clearance_m, s.lowest[f] - s.ground_z);
+          m.clearance_m = std::min(m.clearance_m, above);
+        } else if (swing > 0.7 && swing <= 0.85) {
+          m.landing_m = std::min(m.landing_m, above);
         }
       }
     }

@@ -36,6 +36,7 @@ struct GroundMeasure {
   double yaw_slip_max_rad_s = 0.0;                 ///< the same for the yaw rate of a foot
   double other_foot_height_m = 0.0;                ///< largest height of the higher stance foot in double support
   double clearance_m = 0.0;     ///< lowest sole point in mid swing (0.3 to 0.7 of the swing), of the lower foot
+  double landing_m = 0.0;       ///< lowest sole point late in the swing (0.7 to 0.85 of it), of the lower foot
   double lowest_swing_m = 0.0;  ///< lowest sole point anywhere in the swing; negative: below the ground
   double foot_gap_m = 0.0;      ///< smallest gap between the soles along the base's y axis
   double height_mean_m = 0.0, height_min_m = 0.0, height_max_m = 0.0;  ///< base, deviation from stand

@@ -193,10 +193,11 @@ void add_residuals(const RobotLegs& legs, const GaitTask& task, const std::vecto
   }
 }
 
-/// 0 at both ends of the swing, 1 from 0.3 to 0.7 of it: min((sin(pi s) / sin(0.3 pi))^2, 1).
-double raised(double swing) {
+/// 0 at both ends of the swing, 1 from 0.3 to 0.7 of it: min((sin(pi s) / sin(0.3 pi))^2, 1); in the second half the
+/// exponent is `landing`.
+double raised(double swing, double landing) {
   const double rise = std::sin(std::numbers::pi * swing) / std::sin(0.3 * std::numbers::pi);
-  return std::min(rise * rise, 1.0);
+  return std::min(std::pow(std::max(rise, 0.0), swing < 0.5 ? 2.0 : landing), 1.0);
 }
 
 LegTrajectory sample_legs(const RobotLegs& legs, bool symmetric, KnotTable& table) {
@@ -283,10 +284,12 @@ GroundResiduals::GroundResiduals(const RobotLegs& legs, const GaitTask& task, co
     wide[foot] = contact_weight(s, r + 2.0 * kEdgeBeyond);
     const double in_stance = s / r + 0.5;
     flat_[foot] = in_stance >= task.flat_from && in_stance <= task.flat_to ? 1.0 : 0.0;
+    const double since_contact = s + 0.5 * r;
+    sole_[foot] = since_contact >= task.sole_from && since_contact <= task.sole_to ? 1.0 : 0.0;
     const double swing = std::abs(s) > 0.5 * r ? (s > 0 ? s - 0.5 * r : s + 1.0 - 0.5 * r) / (1.0 - r) : 0.0;
     lifted_[foot] = std::abs(s) > 0.5 * r ? 1.0 - 2.0 * contact_[foot] : 0.0;
     clearance_m_[foot] = std::pow(scenario.lift > 0.0 ? scenario.lift : scenario.gain, kClearanceGrowth) *
-                         task.clearance_m * raised(swing);
+                         task.clearance_m * raised(swing, task.landing);
   }
   const Roll own = hike(task, phase);
   const Roll added = scenario.addition.roll.empty() ? Roll{} : scenario.addition.roll[sample];

@@ -11,7 +11,7 @@
 
 namespace pmg::generator {
 
-inline constexpr int kGroundResiduals = 22;
+inline constexpr int kGroundResiduals = 24;
 
 /// What the ground residuals take of a foot, in the heading frame H at the base's origin.
 template <typename T>
@@ -118,6 +118,7 @@ class GroundResiduals {
       residual[i++] = scale_ * w.above_ground * lifted_[f] * short_of(above, kAboveGround_m);
       residual[i++] = scale_ * w.foot_flat * contact_[f] * foot[f].side_up;
       residual[i++] = scale_ * w.foot_flat * flat_[f] * foot[f].toes_up;
+      residual[i++] = scale_ * w.sole * sole_[f] * beyond(foot[f].toes_up, task_.sole_free_rad);
       residual[i++] = scale_ * w.foot_flat * 0.1 * (1.0 - contact_[f]) * foot[f].side_up;
     }
     residual[i++] =
@@ -128,13 +129,13 @@ class GroundResiduals {
  private:
   static constexpr double kAboveGround_m = 0.001;  ///< height that a swinging foot shall keep
 
-  /// The part of a length beyond +-free_m.
+  /// The part of a value beyond +-free.
   template <typename T>
-  static T beyond(const T& length, double free_m) {
-    if (length > free_m) {
-      return length - free_m;
+  static T beyond(const T& value, double free) {
+    if (value > free) {
+      return value - free;
     }
-    return length < -free_m ? T(length + free_m) : T(0.0);
+    return value < -free ? T(value + free) : T(0.0);
   }
 
   /// max(need - have, 0), rounded over a millimetre so that its slope is continuous.
@@ -180,7 +181,7 @@ class GroundResiduals {
   const Scenario& scenario_;
   PerFoot<SplineBasis> basis_;
   PerFoot<LegVector<double>> sign_, base_q_, base_dq_dphi_;
-  PerFoot<double> contact_{}, clearance_m_{}, flat_{};
+  PerFoot<double> contact_{}, clearance_m_{}, flat_{}, sole_{};  ///< sole_: 1 where the sole shall lie flat
   PerFoot<double> lifted_{};  ///< 0 in stance, 1 in swing as soon as the foot no longer carries the height
   Eigen::Matrix3d R_HB_ = Eigen::Matrix3d::Identity();
   Eigen::Vector3d omega_HB_ = Eigen::Vector3d::Zero();

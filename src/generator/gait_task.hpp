@@ -64,6 +64,7 @@ struct GaitWeights {
   double clearance = 150.0;           ///< per m below the required clearance
   double above_ground = 400.0;        ///< per m of the swinging sole below the ground
   double foot_flat = 10.0;            ///< per rad
+  double sole = 0.0;                  ///< per rad of the stance sole's pitch beyond sole_free_rad
   double foot_gap = 60.0;             ///< per m below the required gap
   LegVector<double> reference = LegVector<double>::Constant(1.0);  ///< per rad, shape of the joint curves
   LegVector<double> bias = LegVector<double>::Constant(1.0);       ///< per rad, of the curves' means
@@ -83,8 +84,14 @@ struct GaitTask {
   double hike_rad = 0.0;      ///< amplitude of the base's roll at full gain, up on the swinging side
   double height_m = 0.0;      ///< mean base height at full gain, deviation from stand
   double clearance_m = 0.04;  ///< of the lowest sole point in mid swing (0.3 to 0.7 of it) at full gain
-  double flat_from = 0.0;     ///< start and end of the flat part of the stance, as shares of the stance
+  /// Exponent of the required clearance in the last 0.3 of the swing: (sin(pi s) / sin(0.3 pi))^landing. 2 comes down
+  /// gently; 1 keeps more clearance until shortly before contact, so that a leg that sags a little lands on time.
+  double landing = 2.0;
+  double flat_from = 0.0;  ///< start and end of the flat part of the stance, as shares of the stance
   double flat_to = 1.0;
+  /// Where a stance sole shall lie flat, in cycles since initial contact, and the pitch that is free. foot_flat pulls
+  /// softly over more of the stance; hip, knee and ankle, each within its ShapeGoal, can add up to a foot on its heel.
+  double sole_from = 0.10, sole_to = 0.30, sole_free_rad = 0.04;
   double foot_gap_m = 0.03;        ///< between the soles, along the base's y axis
   std::vector<LegPose> reference;  ///< kClipSamples poses to stay near [rad]
   std::vector<ShapeGoal> shape;    ///< of the left leg

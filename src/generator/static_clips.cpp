@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kAngleStep_rad = 0.02;
 constexpr double kHeightStep_m = 0.005;
-constexpr double kStraightKnee_rad = 0.12;  // least knee angle of the highest squat row
+constexpr double kStraightKnee_rad = 0.06;  // least knee angle of the highest squat row
 
 constexpr double kLeanCompensation = 0.4;      // share of the lean's shift of mass that the pelvis undoes
 constexpr double kSquatArms_rad_per_m = 1.75;  // arms forward as a counterweight

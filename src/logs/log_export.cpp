@@ -117,7 +117,7 @@ std::optional<model::RobotModel> robot_of(const std::optional<pmg_msgs::robot_in
   const auto options = nlohmann::ordered_json::parse(info->options, nullptr, false);
   const control::ControlSetup setup = replay_setup(*info, options, {});
   try {
-    return model::load_robot(model::find_robot(setup.robot));
+    return control::load_robot(setup);
   } catch (const std::exception& error) {
     report.notes.push_back(fmt::format("no transforms and no URDF: {}", error.what()));
     return {};

@@ -8,6 +8,7 @@
 #include "files/config_reader.hpp"
 #include "model/clip_table.hpp"
 #include "model/command_inverse_file.hpp"
+#include "model/standing_posture.hpp"
 #include "pmg/blending.hpp"
 #include "pmg/library_check.hpp"
 #include "pmg/periodic_slopes.hpp"
@@ -76,20 +77,30 @@ DynamicClip read_dynamic(const fs::path& directory, const std::string& name, con
   return clip;
 }
 
-/// At command 0 the posture must be the standing one. Otherwise the robot jumps when its clips are loaded.
-void check_passes_stand(const ClipTable& table, const RobotModel& robot) {
+/// (table, row of the first command that isn't negative) => the posture at command 0.
+JointVector posture_at_zero(const ClipTable& table, std::size_t above) {
+  if (table.command[above] == 0.0) return table.q[above];
+  const double span = table.command[above] - table.command[above - 1];
+  const double share = -table.command[above - 1] / span;
+  return (1.0 - share) * table.q[above - 1] + share * table.q[above];
+}
+
+std::size_t row_of_zero(const ClipTable& table) {
   std::size_t above = 0;
   while (above < table.command.size() && table.command[above] < 0.0) ++above;
   if (above == table.command.size() || (above == 0 && table.command[0] > 0.0)) {
     files::raise({table.file.string()}, "command",
                  fmt::format("goes from {} to {}", table.command.front(), table.command.back()), "0 in its range");
   }
-  const std::size_t below = table.command[above] == 0.0 ? above : above - 1;
-  const double span = table.command[above] - table.command[below];
-  const double share = span > 0.0 ? -table.command[below] / span : 0.0;
+  return above;
+}
+
+/// At command 0 the posture must be the standing one. Otherwise the robot jumps when its clips are loaded.
+void check_passes_stand(const ClipTable& table, const RobotModel& robot) {
+  const std::size_t above = row_of_zero(table);
+  const JointVector at_zero = posture_at_zero(table, above);
   for (const Joint& joint : robot.joints) {
-    const int i = robot.joint_index.at(joint.name);
-    const double angle = (1.0 - share) * table.q[below][i] + share * table.q[above][i];
+    const double angle = at_zero[robot.joint_index.at(joint.name)];
     if (std::abs(angle - joint.stand_rad) > kSamePosture_rad) {
       files::raise(table.place(above), joint.name, fmt::format("is {} rad at command 0", angle),
                    fmt::format("{}, the standing posture", joint.stand_rad));
@@ -97,15 +108,8 @@ void check_passes_stand(const ClipTable& table, const RobotModel& robot) {
   }
 }
 
-StaticClip read_static(const fs::path& directory, const std::string& name, const RobotModel& robot,
-                       std::size_t channel) {
-  files::ConfigReader reader = files::ConfigReader::from_file(yaml(directory, name));
-  reader.one_of("kind", {"static"});
-  reader.required<std::string>("source");
-  reader.one_of("channel", {kChannelNames[channel]});
-  reader.finish();
-
-  const ClipTable table = read_clip_table(csv(directory, name), robot.joint_index, true);
+ClipTable read_postures(const fs::path& directory, const std::string& name, const RobotModel& robot) {
+  ClipTable table = read_clip_table(csv(directory, name), robot.joint_index, true);
   if (table.q.size() < 2)
     files::raise({table.file.string()}, "", fmt::format("has {} rows", table.q.size()), "2 or more");
   for (std::size_t row = 1; row < table.command.size(); ++row) {
@@ -116,6 +120,18 @@ StaticClip read_static(const fs::path& directory, const std::string& name, const
     }
   }
   check_limits(table, robot);
+  return table;
+}
+
+StaticClip read_static(const fs::path& directory, const std::string& name, const RobotModel& robot,
+                       std::size_t channel) {
+  files::ConfigReader reader = files::ConfigReader::from_file(yaml(directory, name));
+  reader.one_of("kind", {"static"});
+  reader.required<std::string>("source");
+  reader.one_of("channel", {kChannelNames[channel]});
+  reader.finish();
+
+  const ClipTable table = read_postures(directory, name, robot);
   check_passes_stand(table, robot);
   return {table.command, table.q};
 }
@@ -204,6 +220,21 @@ void read_rules(const fs::path& directory, ClipLibrary& library) {
 }
 
 }  // namespace
+
+JointVector standing_posture(const fs::path& directory, const RobotModel& robot) {
+  const ClipTable table = read_postures(directory, kPostureNames.front(), robot);
+  const std::size_t above = row_of_zero(table);
+  const JointVector q = posture_at_zero(table, above);
+  for (const Joint& joint : robot.joints) {
+    const int i = robot.joint_index.at(joint.name);
+    const int other = robot.mirror.partner[static_cast<std::size_t>(i)];
+    const double mirrored = robot.mirror.sign[static_cast<std::size_t>(i)] * q[other];
+    if (std::abs(q[i] - mirrored) <= kSamePosture_rad) continue;
+    files::raise(table.place(above), joint.name, fmt::format("is {} rad at command 0", q[i]),
+                 fmt::format("{}, the mirror image of {}", mirrored, robot.joint_index.name(other)));
+  }
+  return q;
+}
 
 std::string corner_clip_name(const Corner& corner) {
   std::string name;

@@ -11,6 +11,7 @@
 #include "files/config_reader.hpp"
 #include "model/leg_kinematics.hpp"
 #include "model/mirror.hpp"
+#include "model/standing_posture.hpp"
 #include "model/urdf_tree.hpp"
 
 namespace pmg::model {
@@ -264,6 +265,16 @@ RobotModel load_robot(const std::filesystem::path& directory) {
   find_chains(robot, reader);
   robot.mirror = find_mirror(robot, tree);
   robot.total_mass_kg = robot.base_inertia.getMass() + mass(robot.tree);
+  robot.standing_height_m = standing_height(robot);
+  return robot;
+}
+
+RobotModel standing_as(RobotModel robot, const JointVector& q_stand) {
+  for (Joint& joint : robot.joints) {
+    const double angle_rad = q_stand[robot.joint_index.at(joint.name)];
+    if (joint.sit_down_rad == joint.stand_rad) joint.sit_down_rad = angle_rad;
+    joint.stand_rad = angle_rad;
+  }
   robot.standing_height_m = standing_height(robot);
   return robot;
 }

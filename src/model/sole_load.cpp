@@ -53,7 +53,8 @@ void SoleLoads::set_posture(const JointVector& q, const Eigen::Vector3d& gravity
               .ddq = still_,
               .gravity_B = gravity_B,
               .specific_force_B = -kGravity_m_s2 * gravity_B,
-              .omega_B = Eigen::Vector3d::Zero()});
+              .omega_B = Eigen::Vector3d::Zero(),
+              .alpha_B = Eigen::Vector3d::Zero()});
 }
 
 void SoleLoads::set_motion(const LegMotion& motion) noexcept {
@@ -69,7 +70,7 @@ void SoleLoads::compute(Leg& leg, const LegMotion& motion) noexcept {
   std::array<double, kMaxLegJoints> mass_kg{};
   for (auto* each : {&moment_kg_m, &force_N, &moment_Nm}) each->fill(Eigen::Vector3d::Zero());
   KDL::Frame pose = KDL::Frame::Identity();
-  Eigen::Vector3d omega = motion.omega_B, alpha = Eigen::Vector3d::Zero();
+  Eigen::Vector3d omega = motion.omega_B, alpha = motion.alpha_B;
   Eigen::Vector3d point = Eigen::Vector3d::Zero(), specific_force = motion.specific_force_B;  // of the last joint
   const auto relative = [&](const Eigen::Vector3d& r) -> Eigen::Vector3d {
     return alpha.cross(r) + omega.cross(omega.cross(r));

@@ -28,12 +28,12 @@ struct LegMotion {
   Eigen::Vector3d gravity_B;         ///< unit vector
   Eigen::Vector3d specific_force_B;  ///< acceleration of the base less gravity [m/s^2], as an accelerometer reads it
   Eigen::Vector3d omega_B;           ///< angular velocity of the base [rad/s]
+  Eigen::Vector3d alpha_B;           ///< angular acceleration of the base [rad/s^2]
 };
 
 /// Equilibrium of each leg in one moment: J^T f = torques that hold and move the leg itself - joint torques, so
-/// f = (J^T)^+ (...). Neglected: the base's angular acceleration, and joint friction; error_N() estimates what they and
-/// inertia that isn't known exactly do. For a leg with fewer than six joints f is the smallest wrench that explains its
-/// torques.
+/// f = (J^T)^+ (...). Neglected: joint friction; error_N() estimates what it and inertia that isn't known exactly do.
+/// For a leg with fewer than six joints f is the smallest wrench that explains its torques.
 class SoleLoads {
  public:
   explicit SoleLoads(const RobotModel& robot);

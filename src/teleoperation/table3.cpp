@@ -122,7 +122,7 @@ work::Worth worth_of(const Table3& table) {
 }
 
 void run_table3(Table3& table, const evaluation::Supervision& supervision) {
-  const model::RobotModel robot = model::load_robot(model::find_robot(table.evaluated.candidate.control.robot));
+  const model::RobotModel robot = control::load_robot(table.evaluated.candidate.control);
   const auto trials = static_cast<std::size_t>(table.trials);
   for (TaskTrials* task : {&table.wiping, &table.box_picking}) {
     task->runs.assign(trials, {});

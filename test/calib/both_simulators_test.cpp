@@ -214,6 +214,8 @@ TEST(BothSimulators, MoveARobotsJointAlikeWithoutAMotorFile) {
     sim::World world(z1(), options);
     model::JointCommand command = standing_command(z1());
     model::RobotState state;
+    const double middle_rad = std::max(joint.stand_rad, joint.lower_rad + 0.3);  // no stop is met
+    command.q[index] = middle_rad;
     for (int step = 0; step < 1000; ++step) world.step(command);  // comes to rest
 
     const model::HangingLoad load = model::hanging_load(z1(), name);
@@ -225,7 +227,7 @@ TEST(BothSimulators, MoveARobotsJointAlikeWithoutAMotorFile) {
     for (int step = 0; step < 1500; ++step) {
       const double t_s = 0.002 * step;
       world.read(state);
-      command.q[index] = joint.stand_rad + (t_s < 0.1 ? 0.0 : t_s < 1.5 ? 0.2 * std::sin(9.0 * (t_s - 0.1)) : 0.15);
+      command.q[index] = middle_rad + (t_s < 0.1 ? 0.0 : t_s < 1.5 ? 0.2 * std::sin(9.0 * (t_s - 0.1)) : 0.15);
       run.recording.t_s.push_back(t_s);
       run.recording.q_cmd_rad.push_back(command.q[index]);
       run.recording.q_rad.push_back(state.q[index]);

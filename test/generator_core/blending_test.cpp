@@ -67,7 +67,7 @@ TEST(Blending, GainsNeverSumToMoreThanOne) {
           mix(blend, make_command(any(random), any(random), any(random)), {0.8, 0.5, 0.35, 0.35, 0.8, 0.8});
       ASSERT_LE(m.gain_sum, 1.0 + 1e-12);
       double weight_sum = 0.0;
-      for (const double w : m.weight) weight_sum += w;
+      for (std::size_t c = 0; c < m.size; ++c) weight_sum += m.weight[c];
       ASSERT_NEAR(weight_sum, 1.0, 1e-12);
     }
   }

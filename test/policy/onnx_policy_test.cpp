@@ -130,12 +130,12 @@ TEST(OnnxPolicyFile, WhatIsMissingOrNoNumberIsNamed) {
   EXPECT_THAT(refusal_after("\"action_scale\": 0", "\"action_scale\":-1"), HasSubstr("action_scale is -1"));
   EXPECT_THAT(refusal_after("\"variant\"", "\"variamt\""), HasSubstr("variant"));
   EXPECT_THAT(refusal_after("\"golden\"", "\"silver\""), HasSubstr("golden"));
-  EXPECT_THAT(refusal_after("\"kp_Nm_per_rad\": [120.0, ", "\"kp_Nm_per_rad\": [10, 2, "), HasSubstr("kp_Nm_per_rad"));
+  EXPECT_THAT(refusal_after("\"kp_Nm_per_rad\": [180.0, ", "\"kp_Nm_per_rad\": [10, 2, "), HasSubstr("kp_Nm_per_rad"));
 }
 
 TEST(OnnxPolicyFile, APostureOtherThanTrainingsIsNamed) {
-  EXPECT_THAT(refusal_after("\"stand_rad\": [-0.15", "\"stand_rad\": [-0.16"),
-              HasSubstr("trained to stand with left_hip_pitch at -0.16 rad"));
+  EXPECT_THAT(refusal_after("\"stand_rad\": [-0.07", "\"stand_rad\": [-0.08"),
+              HasSubstr("trained to stand with left_hip_pitch at -0.08 rad"));
 }
 
 TEST(OnnxPolicyFile, GoldenPairsMustBeThereAndProveSomething) {

@@ -23,7 +23,7 @@ TEST(Heap, StepAndReadDontAllocate) {
   ASSERT_GT(test::allocation_count(), before_probe) << "the counter doesn't count";
 
   const long before = test::allocation_count();
-  for (int i = 0; i < 1500; ++i) {
+  for (int i = 0; i < 2000; ++i) {
     if (i == 300) world.set_hoist(0.1, 1.0);
     if (i == 600) world.set_hoist(0.0, 0.0);
     if (i == 700) command.kp.setZero();  // the robot collapses onto itself: contacts of every kind

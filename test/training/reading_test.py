@@ -90,7 +90,7 @@ class Reading(unittest.TestCase):
             ("gyro_rad_s: 0.2", "gyro_deg_s: 12", "noise.gyro_deg_s: is unknown"),
             ("gyro_rad_s: 0.2", "gyro_rad_s: true", "noise.gyro_rad_s: is 'true'; expected a number"),
             ("from_share: 0.2", "from_share: 2", "kicks.from_share: is '2'; expected a number from 0 to 1"),
-            ("ramp_iterations: 900", "ramp_iterations: 0.5", "kicks.ramp_iterations: is '0.5'; expected a whole number"),
+            ("ramp_iterations: 800", "ramp_iterations: 0.5", "kicks.ramp_iterations: is '0.5'; expected a whole number"),
             ("frequency_Hz: [0.1, 0.7]", "frequency_hz: [0.1, 0.7]", "upper_body.frequency_hz: is unknown"),
             ("waist_yaw: 0.12", "waist_yaw: -0.12", "upper_body.amplitude_rad.waist_yaw: is '-0.12'"),
         ):
@@ -151,7 +151,7 @@ class Reading(unittest.TestCase):
         self.assertEqual(ranges["friction"], [0.4, 1.2])
         self.assertEqual(
             ranges["kicks"],
-            {"every_s": [3.0, 8.0], "linear_m_s": 1.0, "vertical_m_s": 0.2, "angular_rad_s": 0.8, "from_share": 0.2, "ramp_iterations": 900},
+            {"every_s": [3.0, 8.0], "linear_m_s": 1.2, "vertical_m_s": 0.2, "angular_rad_s": 0.8, "from_share": 0.2, "ramp_iterations": 800},
         )
         self.assertIs(type(ranges["kicks"]["ramp_iterations"]), int)
         self.assertEqual(ranges["upper_body"]["amplitude_rad"]["elbow"], 0.4)

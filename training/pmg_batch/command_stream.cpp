@@ -8,6 +8,7 @@ namespace pmg::training {
 namespace {
 // A velocity below this share of its range becomes zero: operators do not command a crawl.
 constexpr double kSmallestShare = 0.08;
+constexpr double kJumpingShare = 0.04;  // of the draws; with ten jumps each, 5 % of the time
 constexpr std::array<double, kChannels> kChannelShown = {0.7, 0.5, 0.55, 0.45, 0.45, 0.45};
 }  // namespace
 
@@ -23,18 +24,21 @@ double CommandStream::value(std::size_t channel) {
   return channel < kVelocityChannels && std::abs(drawn) < kSmallestShare * range ? 0.0 : drawn;
 }
 
-/// Every velocity at one of its ends or none.
+/// Every velocity at one of its ends or none; in half of the episodes every posture, too.
 void CommandStream::jump() {
   left_s_ = 0.5;
   command_ = Command{};
-  for (std::size_t c = 0; c < kVelocityChannels; ++c) {
+  for (std::size_t c = 0; c < (postures_jump_ ? kChannels : kVelocityChannels); ++c) {
     const double end = uniform(0.0, 3.0);
     command_.u[c] = end < 1.0 ? limits_.lower[c] : end < 2.0 ? limits_.upper[c] : 0.0;
   }
 }
 
 void CommandStream::draw() {
-  if (jumps_left_ == 0 && uniform(0.0, 1.0) < 0.02) jumps_left_ = 10;
+  if (jumps_left_ == 0 && uniform(0.0, 1.0) < kJumpingShare) {
+    jumps_left_ = 10;
+    postures_jump_ = uniform(0.0, 1.0) < 0.5;
+  }
   if (jumps_left_ > 0) {
     --jumps_left_;
     jump();

@@ -100,7 +100,9 @@ CONFIG = {
     },
     "symmetry": {"weight": Number},
     "strictness": {"from_share": Number, "iterations": Range},
-    "rewards": dict.fromkeys(("velocity_slow", "velocity_fast", "yaw_rate", "height", "attitude", "joint_position", "joint_velocity"), _EXPONENTIAL)
+    "rewards": dict.fromkeys(
+        ("velocity_slow", "velocity_fast", "yaw_rate", "height", "bob", "attitude", "joint_position", "joint_velocity"), _EXPONENTIAL
+    )
     | {"joint_position_linear": Numbers}
     | dict.fromkeys(
         (
@@ -129,7 +131,7 @@ CONFIG = {
         Number,
     ),
     "joint_weight": Numbers,
-    "velocity_average_s": Number,
+    "average_s": Number,
 }
 
 

@@ -104,6 +104,7 @@ class Environment:
         self.history = self.layout.history
         # Slow averages of the base's velocity, of the admissible command and of the user's command.
         self.velocity, self.asked, self.wanted = zeros(n, 3), zeros(n, 3), zeros(n, 3)
+        self.posture_error = zeros(n, 3)  # slow average: pitch, roll [rad] and height [m] minus the admissible command
         self.previous_dq, self.previous_sole = zeros(n, actions), zeros(n, 2, 3)
         self.reward, self.done, self.timeout = zeros(n), zeros(n), zeros(n)
         self.terms: dict[str, torch.Tensor] = {}
@@ -179,8 +180,8 @@ class Environment:
         put(self.wanted, self._user()[:, :3], one)
         keep = (~where).float()
         self.time_s.mul_(keep)
-        for action in (self.action, self.action_1, self.action_2, self.previous_dq):
-            action.mul_(keep[:, None])
+        for zeroed in (self.action, self.action_1, self.action_2, self.previous_dq, self.posture_error):
+            zeroed.mul_(keep[:, None])
         self.fresh.copy_(where)
 
     def reset_all(self) -> None:
@@ -207,6 +208,7 @@ class Environment:
         "velocity",
         "asked",
         "wanted",
+        "posture_error",
         "previous_dq",
         "previous_sole",
         "observation",
@@ -292,13 +294,15 @@ class Environment:
         vy = -sin * qvel[:, 0] + cos * qvel[:, 1]
         yaw_rate = rotate(quat, qvel[:, 3:6])[:, 2]
         now = torch.stack([vx, vy, yaw_rate], 1)
-        share = self.tick_s / self.config["velocity_average_s"]
+        share = self.tick_s / self.config["average_s"]
         user, command, optimised = self._user(), self.get("command"), self.get("optimised")
         self.velocity += share * (now - self.velocity)
         self.asked += share * (command[:, :3] - self.asked)
         self.wanted += share * (user[:, :3] - self.wanted)
         torso_roll, torso_pitch, _ = roll_pitch_yaw(torch.nan_to_num(w.xquat[:, self.torso]))
         attitude, height = torch.stack([torso_pitch, torso_roll], 1), qpos[:, 2] - self.standing_height
+        posture_error = torch.cat([attitude, height[:, None]], 1) - command[:, 3:6]
+        self.posture_error += share * (posture_error - self.posture_error)
         q, dq = qpos[:, 7:], qvel[:, 6:]
         sole_quat = torch.nan_to_num(w.xquat[:, self.foot_slice])
         sole = torch.nan_to_num(w.xpos[:, self.foot_slice]) + rotate(sole_quat, self.sole_center.expand(self.n, 2, 3))
@@ -309,8 +313,9 @@ class Environment:
         m = dict(
             slow_error=self.velocity - self.asked,
             fast_error=now - optimised[:, :3],
-            attitude_error=attitude - command[:, 3:5],
-            height_error=height - command[:, 5],
+            attitude_error=posture_error[:, :2],
+            slow_posture_error=self.posture_error,
+            bob_error=qpos[:, 2] - self.get("base_height")[:, 0],
             q_error=leg_q - self.q_ref[:, :legs],
             dq_error=leg_dq - self.get("dq_ref")[:, :legs],
             strictness=self.strictness,
@@ -395,7 +400,9 @@ class Environment:
                 relative.flatten(1),
                 self.velocity,
                 self.asked,
+                self.posture_error,
                 self.get("command"),
+                w.qpos[:, 2:3] - self.get("base_height"),
                 torso_pitch[:, None],
                 torso_roll[:, None],
                 self.robots.privileged,

@@ -18,11 +18,12 @@ def reward_terms(m: dict[str, torch.Tensor], weights: dict, action_unit: float) 
     def strict(name, value):
         terms[name] = m["strictness"] * weights[name] * value
 
-    slow, fast, attitude = m["slow_error"], m["fast_error"], m["attitude_error"]
+    slow, fast, attitude, posture = m["slow_error"], m["fast_error"], m["attitude_error"], m["slow_posture_error"]
     exponential("velocity_slow", (slow[:, :2] ** 2).sum(1))
     exponential("velocity_fast", (fast[:, :2] ** 2).sum(1))
     exponential("yaw_rate", slow[:, 2] ** 2)
-    exponential("height", m["height_error"] ** 2)
+    exponential("height", posture[:, 2] ** 2)
+    exponential("bob", m["bob_error"] ** 2)
     exponential("attitude", (attitude**2).sum(1))
     exponential("joint_position", (m["leg_weight"] * m["q_error"] ** 2).sum(1))
     exponential("joint_velocity", (m["leg_weight"] * m["dq_error"] ** 2).sum(1))
@@ -31,8 +32,8 @@ def reward_terms(m: dict[str, torch.Tensor], weights: dict, action_unit: float) 
     terms["alive"] = torch.full_like(m["gain"], weights["alive"])
     strict("velocity_linear", slow[:, :2].abs().sum(1))
     strict("yaw_rate_linear", slow[:, 2].abs())
-    strict("attitude_linear", attitude.abs().sum(1))
-    strict("height_linear", m["height_error"].abs())
+    strict("attitude_linear", posture[:, :2].abs().sum(1))
+    strict("height_linear", posture[:, 2].abs())
 
     # A pushed robot may step while its command is to stand: the terms for standing still fade with the disturbance.
     standing = 1 - (m["gain"] > 0).float()
