@@ -75,7 +75,8 @@ class TurningRobot {
 TEST(ControlSetup, EveryVariantRunsAsItsFileSays) {
   const int yaw = test::z1().joint_index.at("left_hip_yaw");
   double forward_rad = 0.0;  // a person's hips turn in walking straight ahead; at half speed half as far
-  for (const JointVector& q : model::load_clip_library(clips_of_z1(), test::z1()).positive[kVx]->q)
+  const ClipLibrary library = model::load_clip_library(clips_of_z1(), test::z1());
+  for (const JointVector& q : library.positive[kVx]->q)
     forward_rad = std::max(forward_rad, std::abs(q[yaw] - test::z1().q_stand()[yaw]));
   for (const Variant variant : {Variant::kPmg, Variant::kWithoutGco, Variant::kSingleGait}) {
     const test::LinearPolicyFile file(clips_of_z1(), variant);
