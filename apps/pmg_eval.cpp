@@ -21,6 +21,7 @@
 #include "evaluation/table2.hpp"
 #include "files/config_folders.hpp"
 #include "json_output.hpp"
+#include "pages/text.hpp"
 #include "program.hpp"
 #include "progress_line.hpp"
 #include "sil/summary.hpp"
@@ -97,7 +98,7 @@ class Watch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Writes page and JSON to the folder, text or JSON to stdout. Returns the exit code of what the result is worth.
+/// Writes page and JSON to the folder, its tables or JSON to stdout. Returns the exit code of what the result is worth.
 template <typename Result>
 int hand_over(const apps::EvalArguments& arguments, const Result& result) {
   const work::Worth worth = worth_of(result);
@@ -110,7 +111,9 @@ int hand_over(const apps::EvalArguments& arguments, const Result& result) {
     apps::print_json(json);
   } else {
     if (!worth.reservations().empty()) std::cout << worth.sentence() << '\n';
-    for (const std::string& line : text_of(result)) std::cout << line << '\n';
+    for (const pages::Table& table : tables_of(result)) {
+      for (const std::string& line : pages::console_lines(table)) std::cout << line << '\n';
+    }
     std::cout << "report in " << (arguments.out / "report.html").string() << '\n';
   }
   return worth.exit_code();

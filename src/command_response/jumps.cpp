@@ -122,17 +122,20 @@ ordered_json to_json(const JumpTest& test) {
   return json;
 }
 
-std::vector<std::string> text_of(const JumpTest& test) {
-  std::vector<std::string> lines;
-  for (const bool with : {false, true}) {
-    lines.push_back(fmt::format("{:<24} jump every {} s for {:.0f} s: survived {}", kGroupNames[with ? 1 : 0], kJump_s,
-                                test.duration_s, percent(survival(test, with))));
-  }
+std::vector<pages::Table> tables_of(const JumpTest& test) {
+  pages::Table groups{.header = {"jumping", "survived"}, .rows = {}};
+  for (const bool with : {false, true})
+    groups.rows.push_back({kGroupNames[with ? 1 : 0], percent(survival(test, with))});
+  pages::Table runs{.header = evaluation::error_columns("seed"), .rows = {}};
+  runs.header.insert(runs.header.begin() + 1, {"jumping", "end"});
   for (std::size_t i = 0; i < test.runs.size(); ++i) {
-    const TrialResult& run = test.runs[i];
-    if (run.complete && !run.survived()) lines.push_back(fmt::format("seed {}: {}", i + 1, end_of(run)));
+    if (!test.runs[i].complete) continue;
+    std::vector<std::string> row = {std::to_string(i + 1), kGroupNames[postures_jump(i + 1) ? 1 : 0],
+                                    end_of(test.runs[i])};
+    for (const double error : test.runs[i].errors) row.push_back(fmt::format("{:.3f}", error));
+    runs.rows.push_back(row);
   }
-  return lines;
+  return {groups, runs};
 }
 
 pages::Page page_of(const JumpTest& test) {
@@ -140,21 +143,7 @@ pages::Page page_of(const JumpTest& test) {
   page.worth(worth_of(test));
   if (worth_of(test).usable()) page.verdict({}, "No robot fell or faulted");
   page.heading("Robots");
-  for (const bool with : {false, true}) {
-    page.paragraph(fmt::format("{} jump: survived {}", kGroupNames[with ? 1 : 0], percent(survival(test, with))));
-  }
-  pages::Table table{.header = {"seed", "jumping", "end"}, .rows = {}};
-  for (std::size_t e = 0; e < evaluation::kErrors; ++e) {
-    table.header.push_back(fmt::format("{} error [{}]", evaluation::kErrorNames[e], evaluation::kErrorUnits[e]));
-  }
-  for (std::size_t i = 0; i < test.runs.size(); ++i) {
-    if (!test.runs[i].complete) continue;
-    std::vector<std::string> row = {std::to_string(i + 1), kGroupNames[postures_jump(i + 1) ? 1 : 0],
-                                    end_of(test.runs[i])};
-    for (const double error : test.runs[i].errors) row.push_back(fmt::format("{:.3f}", error));
-    table.rows.push_back(row);
-  }
-  page.table(table);
+  for (const pages::Table& table : tables_of(test)) page.table(table);
   page.heading("How it was measured");
   page.paragraph(fmt::format(
       "Every {} s for {:.0f} s each velocity goes to its lower end, its upper end or 0; with even seeds pitch, roll "

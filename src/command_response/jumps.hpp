@@ -35,6 +35,6 @@ void run_jumps(JumpTest& test, const evaluation::Supervision& supervision);
 work::Worth worth_of(const JumpTest& test);
 nlohmann::ordered_json to_json(const JumpTest& test);
 pages::Page page_of(const JumpTest& test);
-std::vector<std::string> text_of(const JumpTest& test);
+std::vector<pages::Table> tables_of(const JumpTest& test);
 
 }  // namespace pmg::command_response

@@ -185,22 +185,4 @@ ordered_json to_json(const SteadyTest& test) {
   return json;
 }
 
-std::vector<std::string> text_of(const SteadyTest& test) {
-  std::vector<std::string> lines = {fmt::format("{:<34}{:>24}{:>24}{:>8}{:>8}", "command (m/s, rad/s)",
-                                                "admitted vx vy omega", "did vx vy omega", "error", "drift")};
-  for (std::size_t i = 0; i < test.commands.size(); ++i) {
-    const HeldCommand& asked = test.commands[i];
-    const HeldResult& result = test.results[i];
-    if (!result.complete) continue;
-    const auto three = [](const Command& u) { return fmt::format("{:.3f} {:.3f} {:.3f}", u[kVx], u[kVy], u[kOmega]); };
-    lines.push_back(fmt::format("{:<34}{:>24}{:>24}{:>6.1f} %{:>6.1f} %{}", asked.text, three(result.admitted),
-                                three(result.did), 100.0 * worst_error(asked, result.did),
-                                100.0 * worst_drift(asked, result.did, test.limits),
-                                test.reached(i)   ? ""
-                                : result.survived ? fmt::format("  MISSED ({:.0f} %)", 100.0 * asked.limit)
-                                                  : "  FELL or faulted"));
-  }
-  return lines;
-}
-
 }  // namespace pmg::command_response

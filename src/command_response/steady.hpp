@@ -56,6 +56,6 @@ void run_steady(SteadyTest& test, const evaluation::Supervision& supervision);
 work::Worth worth_of(const SteadyTest& test);
 nlohmann::ordered_json to_json(const SteadyTest& test);
 pages::Page page_of(const SteadyTest& test);
-std::vector<std::string> text_of(const SteadyTest& test);
+std::vector<pages::Table> tables_of(const SteadyTest& test);
 
 }  // namespace pmg::command_response

@@ -132,6 +132,17 @@ CaseSummary summarise(const std::vector<TrialResult>& runs) {
   return summary;
 }
 
+std::vector<std::string> error_columns(const std::string& first) {
+  std::vector<std::string> columns = {first};
+  for (std::size_t e = 0; e < kErrors; ++e) columns.push_back(fmt::format("{} [{}]", kErrorNames[e], kErrorUnits[e]));
+  return columns;
+}
+
+std::string interval_text(const Estimate& estimate) {
+  if (!std::isfinite(estimate.upper)) return fmt::format("{:.4f}", estimate.mean);
+  return fmt::format("{:.4f} +-{:.4f}", estimate.mean, estimate.upper - estimate.mean);
+}
+
 ordered_json to_json(const Estimate& estimate) {
   return {{"mean", estimate.mean}, {"ci95", {estimate.lower, estimate.upper}}};
 }

@@ -64,6 +64,10 @@ struct CaseSummary {
 };
 CaseSummary summarise(const std::vector<TrialResult>& runs);
 
+/// A table's columns of errors: a name, then each error's with its unit.
+std::vector<std::string> error_columns(const std::string& first);
+std::string interval_text(const Estimate& estimate);  ///< "0.0489 +-0.0022" of a symmetric interval
+
 nlohmann::ordered_json to_json(const Estimate& estimate);  ///< {"mean", "ci95": [lower, upper]}
 nlohmann::ordered_json to_json(const TrialResult& trial);
 nlohmann::ordered_json to_json(const CaseSummary& summary, const sil::Scenario& scenario);

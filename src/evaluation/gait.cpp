@@ -189,20 +189,6 @@ void run_gait(GaitTest& test, const Supervision& supervision) {
   }
 }
 
-std::string difference_text(const GaitTest& test) {
-  std::string text = fmt::format(
-      "Walks at {:.3f} m/s when asked for {} m/s. From the published means, left and right: ", test.walked_m_s,
-      test.speed_m_s);
-  for (std::size_t joint = 0; joint < kGaitJoints; ++joint) {
-    const auto& left = test.feet[kLeft].measured[joint];
-    const auto& right = test.feet[kRight].measured[joint];
-    text += fmt::format("{}{} {:.0f} and {:.0f} deg RMS ({:.0f} and {:.0f} without the constant offset)",
-                        joint == 0 ? "" : ", ", kGaitJointNames[joint], left.rms_deg, right.rms_deg, left.shape_rms_deg,
-                        right.shape_rms_deg);
-  }
-  return text + ".";
-}
-
 ordered_json to_json(const GaitTest& test) {
   ordered_json rms_limits;
   for (std::size_t joint = 0; joint < kGaitJoints; ++joint)
@@ -243,30 +229,32 @@ ordered_json to_json(const GaitTest& test) {
   return json;
 }
 
-std::vector<std::string> text_of(const GaitTest& test) {
-  std::vector<std::string> lines = {
-      difference_text(test), test.trial.fell ? "FELL" : "did not fall",
-      fmt::format("against {}:          measured                      reference", test.norms.source),
-      "joint                       correlation  RMS deg  shape RMS   correlation  RMS deg"};
+std::vector<pages::Table> tables_of(const GaitTest& test) {
+  pages::Table speed{.header = {"asked [m/s]", "walked [m/s]", "end"}, .rows = {}};
+  speed.rows.push_back({fmt::format("{}", test.speed_m_s), fmt::format("{:.3f}", test.walked_m_s),
+                        test.trial.fell ? "fell" : "did not fall"});
+  pages::Table joints{.header = {"foot", "joint", "correlation", "RMS [deg]", "of the shape [deg]",
+                                 "reference's correlation", "reference's RMS [deg]", ""},
+                      .rows = {}};
+  pages::Table feet{.header = {"foot", "cycles", "period [s]", "duty factor", "reference's", "published",
+                               "lands after the reference [% of a cycle]", ""},
+                    .rows = {}};
   for (const Foot foot : {kLeft, kRight}) {
+    const FootGait& gait = test.feet[foot];
     for (std::size_t joint = 0; joint < kGaitJoints; ++joint) {
-      const CurveAgreement &m = test.feet[foot].measured[joint], &r = test.feet[foot].reference[joint];
-      lines.push_back(
-          fmt::format("{:<6}{:<22}{:>11.3f}{:>9.1f}{:>11.1f}{:>14.3f}{:>9.1f}{}", kSideNames[foot],
-                      kGaitJointNames[joint], m.correlation, m.rms_deg, m.shape_rms_deg, r.correlation, r.rms_deg,
-                      m.correlation >= kAskedCorrelation && m.rms_deg <= test.rms_limit_deg(joint) ? "" : "  MISSED"));
+      const CurveAgreement &m = gait.measured[joint], &r = gait.reference[joint];
+      const bool reached = m.correlation >= kAskedCorrelation && m.rms_deg <= test.rms_limit_deg(joint);
+      joints.rows.push_back({kSideNames[foot], kGaitJointNames[joint], fmt::format("{:.3f}", m.correlation),
+                             fmt::format("{:.1f}", m.rms_deg), fmt::format("{:.1f}", m.shape_rms_deg),
+                             fmt::format("{:.3f}", r.correlation), fmt::format("{:.1f}", r.rms_deg),
+                             reached ? "ok" : "MISSED"});
     }
+    feet.rows.push_back({kSideNames[foot], std::to_string(gait.cycles), fmt::format("{:.3f}", gait.period_s),
+                         fmt::format("{:.3f}", gait.duty_factor), fmt::format("{:.3f}", test.reference_duty_factor),
+                         fmt::format("{:.2f}", kPublishedDutyFactor), fmt::format("{:.1f}", 100.0 * gait.contact_late),
+                         test.duty_reached(foot) ? "ok" : "MISSED"});
   }
-  for (const Foot foot : {kLeft, kRight}) {
-    lines.push_back(
-        fmt::format("{} duty factor {:.3f}, period {:.3f} s over {} cycles (reference {:.3f}, published {:.2f}){}",
-                    kSideNames[foot], test.feet[foot].duty_factor, test.feet[foot].period_s, test.feet[foot].cycles,
-                    test.reference_duty_factor, kPublishedDutyFactor, test.duty_reached(foot) ? "" : "  MISSED"));
-    lines.push_back(fmt::format("{} foot lands {:.1f} % of a cycle {} the reference", kSideNames[foot],
-                                100.0 * std::abs(test.feet[foot].contact_late),
-                                test.feet[foot].contact_late < 0.0 ? "before" : "after"));
-  }
-  return lines;
+  return {speed, joints, feet};
 }
 
 pages::Page page_of(const GaitTest& test) {
@@ -278,7 +266,7 @@ pages::Page page_of(const GaitTest& test) {
         {}, fmt::format("Shapes, angles and duty factors are as people's (correlation at least {}, RMS within {:g} "
                         "standard deviations between persons, duty factor within {} of {})",
                         kAskedCorrelation, kAskedDeviations, kAskedDutyDifference, kPublishedDutyFactor));
-  page.note(difference_text(test));
+  for (const pages::Table& table : tables_of(test)) page.table(table);
   std::vector<double> percent(kCyclePoints);
   for (std::size_t k = 0; k < kCyclePoints; ++k) percent[k] = static_cast<double>(k);
   page.heading("Joints over the gait cycle");
@@ -303,18 +291,6 @@ pages::Page page_of(const GaitTest& test) {
       }
     }
   });
-  page.heading("Feet");
-  pages::Table feet{.header = {"foot", "cycles", "period [s]", "duty factor", "reference's", "published",
-                               "lands after the reference [% of a cycle]"},
-                    .rows = {}};
-  for (const Foot foot : {kLeft, kRight}) {
-    const FootGait& gait = test.feet[foot];
-    feet.rows.push_back({kSideNames[foot], std::to_string(gait.cycles), fmt::format("{:.3f}", gait.period_s),
-                         fmt::format("{:.3f}", gait.duty_factor), fmt::format("{:.3f}", test.reference_duty_factor),
-                         fmt::format("{:.2f}", kPublishedDutyFactor),
-                         fmt::format("{:.1f}", 100.0 * gait.contact_late)});
-  }
-  page.table(feet);
   page.heading("How it was measured");
   page.paragraph(
       fmt::format("{:.0f} s of steady walking at {:.3f} m/s, one robot as the model says. Cycles run from a foot's "

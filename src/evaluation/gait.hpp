@@ -84,9 +84,6 @@ void run_gait(GaitTest& test, const Supervision& supervision);
 work::Worth worth_of(const GaitTest& test);
 nlohmann::ordered_json to_json(const GaitTest& test);
 pages::Page page_of(const GaitTest& test);
-std::vector<std::string> text_of(const GaitTest& test);
-/// Speed, and RMS differences of the joints from the published means with and without the constant offset [deg], which
-/// a correlation doesn't show.
-std::string difference_text(const GaitTest& test);
+std::vector<pages::Table> tables_of(const GaitTest& test);
 
 }  // namespace pmg::evaluation

@@ -161,27 +161,4 @@ ordered_json to_json(const PushTest& test) {
   return json;
 }
 
-namespace {
-std::string survived_percent(const Estimate& share) {
-  return std::isnan(share.mean) ? "-" : fmt::format("{:.1f} %", 100.0 * share.mean);
-}
-}  // namespace
-
-std::vector<std::string> text_of(const PushTest& test) {
-  std::vector<std::string> lines = {"impulse N s   survived   95 % interval     standing   walking"};
-  for (const PushTrials& at : test.strengths) {
-    const Estimate all = test.survival(at);
-    lines.push_back(
-        fmt::format("{:>11.0f} {:>10}   [{:>5.1f}, {:>5.1f}] % {:>10} {:>9}", at.impulse_N_s, survived_percent(all),
-                    100.0 * all.lower, 100.0 * all.upper,
-                    survived_percent(test.survival(at, [](const PushPlan& plan) { return !plan.walking; })),
-                    survived_percent(test.survival(at, [](const PushPlan& plan) { return plan.walking; }))));
-  }
-  if (const auto reached = test.reached()) {
-    lines.push_back(fmt::format("limit: {:.0f} % at {:.0f} N s: {}", 100.0 * kPushSurvival, kJudgedPush_N_s,
-                                *reached ? "ok" : "MISSED"));
-  }
-  return lines;
-}
-
 }  // namespace pmg::evaluation

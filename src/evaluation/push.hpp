@@ -82,6 +82,6 @@ void run_pushes(PushTest& test, const std::vector<double>& impulses_N_s, const S
 
 nlohmann::ordered_json to_json(const PushTest& test);
 pages::Page page_of(const PushTest& test);
-std::vector<std::string> text_of(const PushTest& test);
+std::vector<pages::Table> tables_of(const PushTest& test);
 
 }  // namespace pmg::evaluation

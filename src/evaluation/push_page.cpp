@@ -45,11 +45,8 @@ void add_curves(const PushTest& test, pages::Page& page) {
 }
 
 void add_directions(const PushTest& test, pages::Page& page) {
-  pages::Table table{.header = {"impulse [N s]", "all"}, .rows = {}};
-  for (const char* name : kPushDirectionNames) table.header.emplace_back(name);
   page.columns([&] {
     for (const PushTrials& at : test.strengths) {
-      std::vector<std::string> row = {fmt::format("{:.0f}", at.impulse_N_s), percent_with_interval(test.survival(at))};
       pages::Bars bars{.title = fmt::format("{:.0f} N s: survived by direction [%]", at.impulse_N_s),
                        .unit = "%",
                        .names = {kPushDirectionNames.begin(), kPushDirectionNames.end()},
@@ -59,17 +56,32 @@ void add_directions(const PushTest& test, pages::Page& page) {
         const Estimate share = test.survival(at, [d](const PushPlan& plan) { return plan.direction == d; });
         set.values.push_back(100.0 * share.mean);
         set.intervals.push_back({100.0 * share.lower, 100.0 * share.upper});
-        row.push_back(percent_with_interval(share));
       }
       bars.sets = {set};
       page.bars(bars);
-      table.rows.push_back(row);
     }
   });
-  page.table(table);
 }
 
 }  // namespace
+
+std::vector<pages::Table> tables_of(const PushTest& test) {
+  pages::Table table{.header = {"impulse [N s]", "survived [%]", "standing [%]", "walking [%]"}, .rows = {}},
+      directions{.header = {"impulse [N s]"}, .rows = {}};
+  for (const char* name : kPushDirectionNames) directions.header.push_back(fmt::format("{} [%]", name));
+  for (const PushTrials& at : test.strengths) {
+    const std::string impulse = fmt::format("{:.0f}", at.impulse_N_s);
+    table.rows.push_back({impulse, percent_with_interval(test.survival(at)),
+                          percent_with_interval(test.survival(at, [](const PushPlan& plan) { return !plan.walking; })),
+                          percent_with_interval(test.survival(at, [](const PushPlan& plan) { return plan.walking; }))});
+    std::vector<std::string> row = {impulse};
+    for (int d = 0; d < kPushDirections; ++d)
+      row.push_back(
+          percent_with_interval(test.survival(at, [d](const PushPlan& plan) { return plan.direction == d; })));
+    directions.rows.push_back(row);
+  }
+  return {table, directions};
+}
 
 pages::Page page_of(const PushTest& test) {
   pages::Page page(fmt::format("Pushes: {} on {}", test.evaluated.name, test.robot));
@@ -86,6 +98,7 @@ pages::Page page_of(const PushTest& test) {
   add_curves(test, page);
   page.heading("By direction");
   add_directions(test, page);
+  for (const pages::Table& table : tables_of(test)) page.table(table);
   page.heading("How it was measured");
   page.paragraph(fmt::format(
       "{} trials a strength. A constant force on the torso's centre of mass for {} s, in eight directions about the "

@@ -79,17 +79,16 @@ ordered_json to_json(const RobustnessTest& test) {
   return json;
 }
 
-std::vector<std::string> text_of(const RobustnessTest& test) {
-  std::vector<std::string> lines = {fmt::format("{:<34}{:>9}{:>10}{:>10}{:>10}{:>10}{:>10}", "condition", "survived",
-                                                "lin vel", "yaw vel", "roll", "pitch", "height")};
+std::vector<pages::Table> tables_of(const RobustnessTest& test) {
+  pages::Table table{.header = error_columns("condition"), .rows = {}};
+  table.header.insert(table.header.begin() + 1, "survived");
   for (std::size_t c = 0; c < test.cases.size(); ++c) {
     const CaseSummary& summary = test.summaries[c];
-    std::string line =
-        fmt::format("{:<34}{:>9}", test.cases[c].name, fmt::format("{}/{}", summary.survived, summary.trials));
-    for (const Estimate& error : summary.errors) line += fmt::format("{:>10.4f}", error.mean);
-    lines.push_back(line);
+    std::vector<std::string> row = {test.cases[c].name, fmt::format("{} of {}", summary.survived, summary.trials)};
+    for (const Estimate& error : summary.errors) row.push_back(interval_text(error));
+    table.rows.push_back(row);
   }
-  return lines;
+  return {table};
 }
 
 pages::Page page_of(const RobustnessTest& test) {
@@ -99,25 +98,15 @@ pages::Page page_of(const RobustnessTest& test) {
   page.heading("Conditions");
   pages::Bars bars{.title = "survived [%], 95 % interval", .unit = "%", .names = {}, .sets = {}};
   pages::Bars::Set set{.name = "survived", .values = {}};
-  pages::Table table{.header = {"condition", "survived"}, .rows = {}};
-  for (std::size_t e = 0; e < kErrors; ++e) {
-    table.header.push_back(fmt::format("{} error [{}]", kErrorNames[e], kErrorUnits[e]));
-  }
   for (std::size_t c = 0; c < test.cases.size(); ++c) {
-    const CaseSummary& summary = test.summaries[c];
-    const Estimate share = survival(summary);
+    const Estimate share = survival(test.summaries[c]);
     bars.names.push_back(test.cases[c].name);
     set.values.push_back(100.0 * share.mean);
     set.intervals.push_back({100.0 * share.lower, 100.0 * share.upper});
-    std::vector<std::string> row = {test.cases[c].name, fmt::format("{} of {}", summary.survived, summary.trials)};
-    for (const Estimate& error : summary.errors) {
-      row.push_back(fmt::format("{:.4f} [{:.4f}, {:.4f}]", error.mean, error.lower, error.upper));
-    }
-    table.rows.push_back(row);
   }
   bars.sets = {set};
   page.bars(bars);
-  page.table(table);
+  for (const pages::Table& table : tables_of(test)) page.table(table);
   page.heading("How it was measured");
   page.paragraph(
       fmt::format("{} seeds a condition of {} ({:.0f} s). Besides the condition robots differ as {} says; the "

@@ -31,6 +31,6 @@ void evaluate(RobustnessTest& test);  ///< fills summaries
 
 nlohmann::ordered_json to_json(const RobustnessTest& test);
 pages::Page page_of(const RobustnessTest& test);
-std::vector<std::string> text_of(const RobustnessTest& test);
+std::vector<pages::Table> tables_of(const RobustnessTest& test);
 
 }  // namespace pmg::evaluation

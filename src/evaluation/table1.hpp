@@ -67,6 +67,6 @@ Comparison compare(const Case& policy, const std::vector<TrialResult>& runs, con
 
 nlohmann::ordered_json to_json(const Table1& table);
 pages::Page page_of(const Table1& table);
-std::vector<std::string> text_of(const Table1& table);  ///< lines for a console
+std::vector<pages::Table> tables_of(const Table1& table);  ///< of the page and of a console
 
 }  // namespace pmg::evaluation

@@ -56,11 +56,6 @@ pages::Bars step_bars(const Table1& table, std::size_t error) {
   return bars;
 }
 
-std::string interval_text(const Estimate& estimate) {
-  if (!std::isfinite(estimate.upper)) return fmt::format("{:.4f}", estimate.mean);
-  return fmt::format("{:.4f} [{:.4f}, {:.4f}]", estimate.mean, estimate.lower, estimate.upper);
-}
-
 void add_verdicts(const Table1& table, pages::Page& page) {
   const CaseSummary& judged = table.summaries[table.judged];
   page.worth(worth_of(table));
@@ -84,40 +79,38 @@ void add_verdicts(const Table1& table, pages::Page& page) {
 }
 
 pages::Table errors_table(const Table1& table) {
-  pages::Table out{.header = {"policy"}, .rows = {}};
-  for (std::size_t e = 0; e < kErrors; ++e) out.header.push_back(titled(e));
-  out.header.push_back("falls");
+  pages::Table out{.header = error_columns("mean absolute error"), .rows = {}};
+  out.header.emplace_back("falls");
+  const auto add = [&out](const std::string& name, const auto& cell, const std::string& falls) {
+    std::vector<std::string> row = {name};
+    for (std::size_t e = 0; e < kErrors; ++e) row.push_back(cell(e));
+    row.push_back(falls);
+    out.rows.push_back(row);
+  };
+  const auto figures = [&add](const std::string& name, const Errors& values, const std::string& falls) {
+    add(
+        name, [&](std::size_t e) { return fmt::format("{:.4f}", values[e]); }, falls);
+  };
+  const auto estimates = [&add](const std::string& name, const auto& of, const std::string& falls) {
+    add(
+        name, [&](std::size_t e) { return interval_text(of[e]); }, falls);
+  };
   for (std::size_t c = 0; c < table.cases.size(); ++c) {
-    std::vector<std::string> row = {table.cases[c].name};
-    for (const Estimate& estimate : table.summaries[c].errors) row.push_back(interval_text(estimate));
-    row.push_back(fmt::format("{} of {}", table.summaries[c].falls, table.summaries[c].trials));
-    out.rows.push_back(row);
-    const auto figures = [&](const std::string& name, const Errors& values) {
-      row = {table.cases[c].name + ", " + name};
-      for (const double figure : values) row.push_back(fmt::format("{:.4f}", figure));
-      row.push_back("");
-      out.rows.push_back(row);
-    };
-    row = {table.cases[c].name + ", raw: tick by tick"};
-    for (const Estimate& estimate : table.summaries[c].errors_raw) row.push_back(interval_text(estimate));
-    row.push_back("");
-    out.rows.push_back(row);
-    figures("doing nothing", table.yardsticks[c].nothing.errors);
-    figures("perfect follower", table.yardsticks[c].follower.errors);
-    figures("share left", table.shares(c));
-    if (std::isfinite(table.summaries[c].errors_beyond_reach[0].mean)) {
-      row = {table.cases[c].name + ", steps beyond the clips' reach"};
-      for (const Estimate& estimate : table.summaries[c].errors_beyond_reach) row.push_back(interval_text(estimate));
-      row.push_back("");
-      out.rows.push_back(row);
-    }
-    const auto published = published_errors(table.cases[c].name);
-    if (!published) continue;
-    row = {table.cases[c].name + ", paper"};
-    for (const double figure : *published) row.push_back(fmt::format("{:.4f}", figure));
-    row.push_back("not told");
-    out.rows.push_back(row);
+    const std::string& name = table.cases[c].name;
+    const CaseSummary& summary = table.summaries[c];
+    estimates(name, summary.errors, fmt::format("{} of {}", summary.falls, summary.trials));
+    estimates(name + ", raw: tick by tick", summary.errors_raw, "");
+    figures(name + ", doing nothing", table.yardsticks[c].nothing.errors, "");
+    figures(name + ", perfect follower", table.yardsticks[c].follower.errors, "");
+    figures(name + ", share left", table.shares(c), "");
+    if (std::isfinite(summary.errors_beyond_reach[0].mean))
+      estimates(name + ", beyond the clips' reach", summary.errors_beyond_reach, "");
+    if (const auto published = published_errors(name)) figures(name + ", paper", *published, "not told");
   }
+  add(
+      fmt::format("{}{}, limit", table.cases[table.judged].name, table.gentle() ? "" : ", share left"),
+      [&](std::size_t e) { return fmt::format("{:.4f} {}", table.limit(e), table.reached(e) ? "ok" : "MISSED"); },
+      table.summaries[table.judged].falls == 0 ? "0 ok" : "0 MISSED");
   return out;
 }
 
@@ -147,13 +140,12 @@ pages::Chart course_chart(const Table1& table, Channel channel) {
 }
 
 pages::Table differences_table(const Table1& table) {
-  pages::Table out{.header = {"difference, by seed"}, .rows = {}};
-  for (std::size_t e = 0; e < kErrors; ++e) out.header.push_back(titled(e));
-  out.header.push_back("pairs");
+  pages::Table out{.header = error_columns("difference, by seed"), .rows = {}};
+  out.header.emplace_back("pairs");
   for (const Comparison& comparison : table.comparisons) {
     std::vector<std::string> row = {comparison.policy + " - " + comparison.other};
     for (const Estimate& d : comparison.difference) {
-      row.push_back(interval_text(d) + (d.excludes_zero() ? " excludes zero" : ""));
+      row.push_back(fmt::format("{} {}", interval_text(d), d.upper < 0.0 ? "better" : d.lower > 0.0 ? "worse" : "?"));
     }
     row.push_back(std::to_string(comparison.pairs));
     out.rows.push_back(row);
@@ -162,8 +154,8 @@ pages::Table differences_table(const Table1& table) {
 }
 
 pages::Table runs_table(const Table1& table) {
-  pages::Table out{.header = {"policy", "seed", "end"}, .rows = {}};
-  for (std::size_t e = 0; e < kErrors; ++e) out.header.push_back(titled(e));
+  pages::Table out{.header = error_columns("policy"), .rows = {}};
+  out.header.insert(out.header.begin() + 1, {"seed", "end"});
   for (std::size_t c = 0; c < table.cases.size(); ++c) {
     for (std::size_t seed = 0; seed < table.campaign.runs[c].size(); ++seed) {
       const TrialResult& run = table.campaign.runs[c][seed];
@@ -180,6 +172,12 @@ pages::Table runs_table(const Table1& table) {
 
 }  // namespace
 
+std::vector<pages::Table> tables_of(const Table1& table) {
+  std::vector<pages::Table> tables = {errors_table(table)};
+  if (!table.comparisons.empty()) tables.push_back(differences_table(table));
+  return tables;
+}
+
 pages::Page page_of(const Table1& table) {
   pages::Page page("Command tracking: " + table.robot);
   add_verdicts(table, page);
@@ -187,8 +185,7 @@ pages::Page page_of(const Table1& table) {
   page.columns([&] {
     for (std::size_t e = 0; e < kErrors; ++e) page.bars(overall_bars(table, e));
   });
-  page.table(errors_table(table));
-  if (!table.comparisons.empty()) page.table(differences_table(table));
+  for (const pages::Table& one : tables_of(table)) page.table(one);
   page.heading("Over time, seed 1");
   page.columns([&] {
     for (const Channel channel : {kVx, kVy, kOmega, kPitch, kRoll, kHeight}) page.chart(course_chart(table, channel));

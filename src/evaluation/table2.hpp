@@ -97,6 +97,6 @@ void run_table2(Table2& table, const std::filesystem::path& folder, const Superv
 
 nlohmann::ordered_json to_json(const Table2& table);
 pages::Page page_of(const Table2& table);
-std::vector<std::string> text_of(const Table2& table);
+std::vector<pages::Table> tables_of(const Table2& table);
 
 }  // namespace pmg::evaluation

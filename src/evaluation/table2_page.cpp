@@ -15,8 +15,6 @@ constexpr const char* kOnePolicy =
     "simulation and the robot, not what a policy has "
     "learned: imitation by a policy that was trained with the calibrated motors could be better.";
 
-std::string interval(const Estimate& e) { return fmt::format("{:.4f} ({:.4f} to {:.4f})", e.mean, e.lower, e.upper); }
-
 pages::Bars bars(const Table2& table, std::size_t metric, const std::string& title) {
   pages::Bars picture{.title = title,
                       .unit = "rad",
@@ -73,6 +71,24 @@ ordered_json to_json(const Table2& table) {
   return json;
 }
 
+std::vector<pages::Table> tables_of(const Table2& table) {
+  if (!table.complete) return {};
+  pages::Table figures{.header = {"configuration", "imitation [rad]", "paper", "sim-to-real [rad]", "paper",
+                                  "robots that fell", "simulations that fell"},
+                       .rows = {}};
+  for (std::size_t c = 0; c < kConfigurations; ++c) {
+    const ConfigurationResult& r = table.results[c];
+    const auto paper = published(static_cast<Configuration>(c));
+    figures.rows.push_back({kConfigurationNames[c], interval_text(r.imitation_rad), fmt::format("{:.4f}", paper[0]),
+                            interval_text(r.sim_to_real_rad), fmt::format("{:.4f}", paper[1]),
+                            fmt::format("{} of {}", r.robot_falls, table.plants.size()),
+                            fmt::format("{}", r.simulation_falls)});
+  }
+  pages::Table ratio{.header = {"sim-to-real error of full calibration over the baseline's", "asked"}, .rows = {}};
+  ratio.rows.push_back({fmt::format("{:.2f}", table.ratio()), fmt::format("{}", kAskedRatio)});
+  return {figures, ratio};
+}
+
 pages::Page page_of(const Table2& table) {
   pages::Page page(fmt::format("{}: sim-to-real, Table II", table.robot));
   page.worth(worth_of(table));
@@ -86,18 +102,7 @@ pages::Page page_of(const Table2& table) {
     page.bars(bars(table, 0, "motion imitation error [rad]"));
     page.bars(bars(table, 1, "sim-to-real error [rad]"));
   });
-  pages::Table figures{.header = {"configuration", "imitation [rad]", "paper", "sim-to-real [rad]", "paper",
-                                  "robots that fell", "simulations that fell"},
-                       .rows = {}};
-  for (std::size_t c = 0; c < kConfigurations; ++c) {
-    const ConfigurationResult& r = table.results[c];
-    const auto paper = published(static_cast<Configuration>(c));
-    figures.rows.push_back({kConfigurationNames[c], interval(r.imitation_rad), fmt::format("{:.4f}", paper[0]),
-                            interval(r.sim_to_real_rad), fmt::format("{:.4f}", paper[1]),
-                            fmt::format("{} of {}", r.robot_falls, table.plants.size()),
-                            fmt::format("{}", r.simulation_falls)});
-  }
-  page.table(figures);
+  for (const pages::Table& one : tables_of(table)) page.table(one);
   page.heading("A knee, robot 1");
   std::vector<double> phase;
   for (std::size_t bin = 0; bin < WalkCurves::kBins; ++bin)
@@ -121,25 +126,6 @@ pages::Page page_of(const Table2& table) {
   }
   page.table(plants);
   return page;
-}
-
-std::vector<std::string> text_of(const Table2& table) {
-  if (!table.complete) return {};
-  std::vector<std::string> lines = {fmt::format("{:<36}{:>18}{:>9}{:>18}{:>9}{:>8}", "RMS over leg joints [rad]",
-                                                "imitation", "paper", "sim-to-real", "paper", "falls")};
-  for (std::size_t c = 0; c < kConfigurations; ++c) {
-    const ConfigurationResult& r = table.results[c];
-    const auto paper = published(static_cast<Configuration>(c));
-    lines.push_back(fmt::format(
-        "{:<36}{:>18}{:>9.4f}{:>18}{:>9.4f}{:>8}", kConfigurationNames[c],
-        fmt::format("{:.4f} +-{:.4f}", r.imitation_rad.mean, r.imitation_rad.upper - r.imitation_rad.mean), paper[0],
-        fmt::format("{:.4f} +-{:.4f}", r.sim_to_real_rad.mean, r.sim_to_real_rad.upper - r.sim_to_real_rad.mean),
-        paper[1], fmt::format("{}/{}", r.robot_falls, table.plants.size())));
-  }
-  lines.push_back(fmt::format("sim-to-real error of full calibration: {:.2f} of the baseline's (asked: {})",
-                              table.ratio(), kAskedRatio));
-  lines.push_back("one policy in all configurations, not four");
-  return lines;
 }
 
 }  // namespace pmg::evaluation

@@ -16,6 +16,11 @@ std::string without_trailing_zeros(std::string text) {
   return text;
 }
 
+/// Columns that a text takes on a console; every code point takes one.
+std::size_t width(std::string_view text) {
+  return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
 }  // namespace
 
 std::string escape_markup(std::string_view text) {
@@ -63,6 +68,35 @@ std::string number(double value) {
   }
   const int before_point = static_cast<int>(std::floor(std::log10(std::abs(value)))) + 1;
   return without_trailing_zeros(fmt::format("{:.{}f}", value, std::max(0, kDigits - before_point)));
+}
+
+std::vector<std::string> console_lines(const Table& table) {
+  std::vector<std::string> names = table.header, units(table.header.size());
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    const std::size_t unit = names[c].rfind(" [");
+    if (unit == std::string::npos) continue;
+    units[c] = names[c].substr(unit + 1);
+    names[c].erase(unit);
+  }
+  std::vector<std::vector<std::string>> rows = {names, units};
+  if (std::ranges::all_of(units, &std::string::empty)) rows.pop_back();
+  rows.insert(rows.end(), table.rows.begin(), table.rows.end());
+  std::vector<std::size_t> widths(names.size());
+  for (const std::vector<std::string>& row : rows) {
+    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], width(row[c]));
+  }
+  std::vector<std::string> lines;
+  for (const std::vector<std::string>& row : rows) {
+    std::string line;
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      const std::string padding(widths[c] - width(row[c]), ' ');
+      line += c == 0 ? row[c] + padding : "  " + padding + row[c];
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    lines.push_back(line);
+  }
+  lines.emplace_back();
+  return lines;
 }
 
 }  // namespace pmg::pages

@@ -3,6 +3,9 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "pages/pictures.hpp"
 
 namespace pmg::pages {
 
@@ -15,5 +18,9 @@ std::string escape_script(std::string json);
 /// A number for people: four significant digits (integers below ten million in full), an exponent only for very small
 /// and very large ones; "-" if the number isn't finite.
 std::string number(double value);
+
+/// The table for a console: columns aligned, the first one at its left end; a header's unit, " [m/s]", stands below it.
+/// Its last line is empty.
+std::vector<std::string> console_lines(const Table& table);
 
 }  // namespace pmg::pages

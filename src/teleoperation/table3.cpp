@@ -42,9 +42,6 @@ ordered_json to_json(const TaskTrials& task, int trials) {
 
 void add_trials(const TaskTrials& task, pages::Page& page) {
   page.heading(fmt::format("Trials of {}", task.name));
-  pages::Table ends{.header = {"end", "trials"}, .rows = {}};
-  for (const auto& [name, count] : task.ends()) ends.rows.push_back({name, std::to_string(count)});
-  page.table(ends);
   const bool lifts = std::ranges::any_of(task.runs, [](const TaskResult& run) { return run.lifted_m > 0.0; });
   pages::Table runs{.header = {"trial", "end", "moved [m]", "after [s]", "what the operator did", "what it was told"},
                     .rows = {}};
@@ -190,6 +187,17 @@ ordered_json to_json(const Table3& table) {
   return json;
 }
 
+std::vector<pages::Table> tables_of(const Table3& table) {
+  pages::Table done{.header = {"task", "done [%]", "the paper [%]", "trials"}, .rows = {}},
+      ends{.header = {"task", "end", "trials"}, .rows = {}};
+  for (const TaskTrials* task : table.tasks()) {
+    done.rows.push_back({task->name, percent_with_interval(task->done()), fmt::format("{:.0f}", 100.0 * task->paper),
+                         std::to_string(table.trials)});
+    for (const auto& [name, count] : task->ends()) ends.rows.push_back({task->name, name, std::to_string(count)});
+  }
+  return {done, ends};
+}
+
 pages::Page page_of(const Table3& table) {
   pages::Page page(fmt::format("Teleoperation: {} on {}", table.evaluated.name, table.robot));
   page.worth(worth_of(table));
@@ -202,20 +210,11 @@ pages::Page page_of(const Table3& table) {
         fmt::format("Films of each task's first trial of each end lie beside this page: {}. A film of trial N: "
                     "pmg_eval table3 --first N --trials 1 --video.",
                     fmt::join(table.films, ", ")));
+  for (const pages::Table& one : tables_of(table)) page.table(one);
   for (const TaskTrials* task : table.tasks()) add_trials(*task, page);
   page.heading("How it was measured");
   for (const std::string& text : {operator_text(table), wiping_text(), box_text()}) page.paragraph(text);
   return page;
-}
-
-std::vector<std::string> text_of(const Table3& table) {
-  std::vector<std::string> lines;
-  for (const TaskTrials* task : table.tasks()) {
-    lines.push_back(fmt::format("{}: done in {} % of {} trials (the paper: {:.0f} %)", task->name,
-                                percent_with_interval(task->done()), table.trials, 100.0 * task->paper));
-    for (const auto& [name, count] : task->ends()) lines.push_back(fmt::format("  {}: {}", name, count));
-  }
-  return lines;
 }
 
 }  // namespace pmg::teleoperation

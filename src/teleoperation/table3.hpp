@@ -67,6 +67,6 @@ work::Worth worth_of(const Table3& table);
 
 nlohmann::ordered_json to_json(const Table3& table);
 pages::Page page_of(const Table3& table);
-std::vector<std::string> text_of(const Table3& table);
+std::vector<pages::Table> tables_of(const Table3& table);
 
 }  // namespace pmg::teleoperation
