@@ -42,7 +42,7 @@ class Environment:
         self.device = self.worlds.torch_device
         self._constants(model, description, torso, feet)
         self.fields = fields
-        self._state()
+        self._state(description)
 
     # ------------------------------------------------------------------------------------------------ construction
 
@@ -86,7 +86,7 @@ class Environment:
             raise ValueError(f"joint kinds {sorted(unknown)}; expected some of {sorted(set(self.leg_kinds))}")
         return self._tensor([values.get(kind, otherwise) for kind in self.leg_kinds])
 
-    def _state(self) -> None:
+    def _state(self, description: dict) -> None:
         n, joints, actions = self.n, len(self.stand), self.actions
         zeros = lambda *shape: torch.zeros(*shape, device=self.device)
         self.stream = torch.zeros(n, dtype=torch.int64, device=self.device)
@@ -100,7 +100,7 @@ class Environment:
         self.q_ref = zeros(n, joints)
         self.sway = zeros(n, 4, joints)  # offset, amplitude, frequency, phase
         self.fresh = torch.ones(n, dtype=torch.bool, device=self.device)
-        self.layout = Observation(self.stand, actions, n)
+        self.layout = Observation(description, self.stand, n)
         self.history = self.layout.history
         # Slow averages of the base's velocity, of the admissible command and of the user's command.
         self.velocity, self.asked, self.wanted = zeros(n, 3), zeros(n, 3), zeros(n, 3)
@@ -367,19 +367,25 @@ class Environment:
 
     def _observations(self) -> tuple[torch.Tensor, torch.Tensor]:
         w, noise = self.worlds, self.ranges["noise"]
-        true = (w.qvel[:, 3:6], self.layout.gravity_direction(w.qpos[:, 3:7]), w.qpos[:, 7:], w.qvel[:, 6:])
-        gyro, gravity, q, dq = true
+        gyro, gravity, q, dq = w.qvel[:, 3:6], self.layout.gravity_direction(w.qpos[:, 3:7]), w.qpos[:, 7:], w.qvel[:, 6:]
         shown = w.motors.reading(q) if w.motors else q
         noisy = lambda x, size: x + size * (2 * torch.rand_like(x) - 1)
-        sensed = (
-            noisy(gyro, noise["gyro_rad_s"]),
-            noisy(gravity, noise["gravity_direction"]),
-            noisy(shown + self.robots.encoder_offset, noise["q_rad"]),
-            noisy(dq, noise["dq_rad_s"]),
+        sensed = dict(
+            gyro=noisy(gyro, noise["gyro_rad_s"]),
+            gravity_direction=noisy(gravity, noise["gravity_direction"]),
+            q=noisy(shown + self.robots.encoder_offset, noise["q_rad"]),
+            dq=noisy(dq, noise["dq_rad_s"]),
         )
-        given = (self.get("optimised"), self.get("command"), self.get("phase"), self.q_ref, self.get("dq_ref"), self.action)
-        seen = self.layout.with_history(self.layout.now(*sensed, *given), *sensed, self.action, self.fresh)
-        critic = torch.cat([self.layout.now(*true, *given), self._privileged()], 1)
+        given = dict(
+            command=self.get("optimised"),
+            user_command=self.get("command"),
+            phase=self.get("phase"),
+            q_ref=self.q_ref,
+            dq_ref=self.get("dq_ref"),
+            last_action=self.action,
+        )
+        seen = self.layout.with_history(given | sensed, self.fresh)
+        critic = torch.cat([self.layout.now(given | dict(gyro=gyro, gravity_direction=gravity, q=q, dq=dq)), self._privileged()], 1)
         return torch.nan_to_num(seen).clamp(-50, 50), torch.nan_to_num(critic).clamp(-50, 50)
 
     def _privileged(self) -> torch.Tensor:

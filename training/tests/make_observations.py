@@ -21,13 +21,6 @@ TICKS = 9  # two more than the oldest frame needs
 CHANNELS = 6
 
 
-def layout_of(description: dict) -> list[str]:
-    """ "q, 2 ticks old: left_knee" and so on, in the vector's order."""
-    return [
-        f"{term['name']}, {term['age_ticks']} ticks old: {element}" for term in description["observation"]["terms"] for element in term["elements"]
-    ]
-
-
 def draw_tick(random: np.random.Generator, stand: list[float], actions: int) -> dict:
     joints, rounded = len(stand), lambda x: [round(float(v), 4) for v in x]
     quat = random.normal(size=4)
@@ -46,46 +39,45 @@ def draw_tick(random: np.random.Generator, stand: list[float], actions: int) -> 
     )
 
 
-def observations(ticks: list[dict], stand: list[float], actions: int) -> list[list[float]]:
+def observations(ticks: list[dict], description: dict) -> list[list[float]]:
     """Training's own, tick after tick."""
-    observation = Observation(torch.tensor(stand), actions, 1)
+    observation = Observation(description, torch.tensor([joint["stand_rad"] for joint in description["joints"]]), 1)
     row = lambda values: torch.tensor([values], dtype=torch.float32)
     out = []
     for i, tick in enumerate(ticks):
         quat = np.array(tick["quat_wxyz"]) / np.linalg.norm(tick["quat_wxyz"])
-        sensed = (row(tick["gyro_rad_s"]), observation.gravity_direction(row(quat.tolist())), row(tick["q_rad"]), row(tick["dq_rad_s"]))
-        angle, gain, action = 2 * math.pi * tick["phase"], tick["gain"], row(tick["last_action"])
-        now = observation.now(
-            *sensed,
-            row(tick["command"]),
-            row(tick["user_command"]),
-            row([gain * math.sin(angle), gain * math.cos(angle), gain]),
-            row(tick["q_ref_rad"]),
-            row(tick["dq_ref_rad_s"]),
-            action,
+        angle, gain = 2 * math.pi * tick["phase"], tick["gain"]
+        values = dict(
+            gyro=row(tick["gyro_rad_s"]),
+            gravity_direction=observation.gravity_direction(row(quat.tolist())),
+            command=row(tick["command"]),
+            user_command=row(tick["user_command"]),
+            phase=row([gain * math.sin(angle), gain * math.cos(angle), gain]),
+            q_ref=row(tick["q_ref_rad"]),
+            dq_ref=row(tick["dq_ref_rad_s"]),
+            q=row(tick["q_rad"]),
+            dq=row(tick["dq_rad_s"]),
+            last_action=row(tick["last_action"]),
         )
-        out.append(observation.with_history(now, *sensed, action, torch.tensor([i == 0]))[0].tolist())
+        out.append(observation.with_history(values, torch.tensor([i == 0]))[0].tolist())
     return out
 
 
 def main(library: str, robot: str, out: Path) -> None:
     description = ReferenceBatch(library, robot).description
-    stand, actions = [j["stand_rad"] for j in description["joints"]], len(description["action_joints"])
+    joints = [{key: joint[key] for key in ("name", "stand_rad")} for joint in description["joints"]]
     random = np.random.default_rng(11)
-    ticks = [draw_tick(random, stand, actions) for _ in range(TICKS)]
-    for tick, seen in zip(ticks, observations(ticks, stand, actions), strict=True):
+    ticks = [draw_tick(random, [joint["stand_rad"] for joint in joints], len(description["action_joints"])) for _ in range(TICKS)]
+    for tick, seen in zip(ticks, observations(ticks, description), strict=True):
         tick["observation"] = [float(f"{x:.9g}") for x in seen]
     text = json.dumps(
         dict(
-            robot=description["robot"],
-            joints=[j["name"] for j in description["joints"]],
-            stand_rad=stand,
-            action_joints=description["action_joints"],
-            layout=layout_of(description),
-            ticks=ticks,
+            robot=description["robot"], joints=joints, action_joints=description["action_joints"], observation=description["observation"], ticks=ticks
         )
     )
-    out.write_text(text.replace('"ticks": [{', '"ticks": [\n{').replace("}, {", "},\n{").replace(', "layout"', ',\n"layout"') + "\n")
+    out.write_text(
+        text.replace('"ticks": [{', '"ticks": [\n{').replace('}, {"gyro', '},\n{"gyro').replace(', "observation": {', ',\n"observation": {') + "\n"
+    )
 
 
 if __name__ == "__main__":

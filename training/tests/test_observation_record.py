@@ -11,7 +11,8 @@ TOLERANCE = 1e-7  # of the same arithmetic on another machine, elements of order
 
 def test_the_recorded_observations_are_trainings():
     record = json.loads(RECORD.read_text())
-    seen = observations(record["ticks"], record["stand_rad"], len(record["action_joints"]))
+    names = [f"{term['name']}, {term['age_ticks']} ticks old: {e}" for term in record["observation"]["terms"] for e in term["elements"]]
+    seen = observations(record["ticks"], record)
     for number, (tick, found) in enumerate(zip(record["ticks"], seen, strict=True)):
-        for name, expected, value in zip(record["layout"], tick["observation"], found, strict=True):
+        for name, expected, value in zip(names, tick["observation"], found, strict=True):
             assert abs(value - expected) <= TOLERANCE * max(1, abs(expected)), f"{name}, tick {number}"
