@@ -255,6 +255,52 @@
     place.style.minHeight = '';
   };
 
+  // Behind each title a button that saves: what is drawn as SVG, the numbers of a chart or of lanes as CSV.
+  const cell = (value) => {
+    const words = typeof value === 'number' ? String(+value.toPrecision(12)) : String(value ?? '');
+    return /[",\n]/.test(words) ? `"${words.replaceAll('"', '""')}"` : words;
+  };
+  const rowsOf = (spec) => {
+    if (spec.lanes) {
+      const rows = spec.lanes.flatMap((lane) => lane.stretches.map(([from, to, words]) => [lane.name, words, from, to]));
+      return [['row', 'text', `from [${spec.x_unit}]`, `to [${spec.x_unit}]`], ...rows];
+    }
+    const columns = data({...spec, unit: 1}), names = spec.lines.map((line) => line.name);
+    const x = spec.x_unit ? `${spec.x_name} [${spec.x_unit}]` : spec.x_name;
+    return [[x, ...names], ...columns[0].map((_, i) => columns.map((column) => column[i]))];
+  };
+  const svgOf = (shown) => {
+    const copy = shown.cloneNode(true), [, , width, height] = copy.getAttribute('viewBox').split(' ');
+    copy.setAttribute('width', width);
+    copy.setAttribute('height', height);
+    copy.setAttribute('style', 'font: 12px system-ui, sans-serif');
+    const style = document.createElementNS(copy.namespaceURI, 'style');
+    style.textContent = [...document.styleSheets[0].cssRules].map((rule) => rule.cssText)
+        .filter((rule) => /^svg [^{]/.test(rule)).join('\n');
+    copy.prepend(style);
+    return new XMLSerializer().serializeToString(copy);
+  };
+  const save = (name, type, content) => {
+    const link = document.createElement('a');
+    link.href = URL.createObjectURL(new Blob([content], {type}));
+    link.download = name;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 60000);
+  };
+  for (const picture of document.querySelectorAll('.picture')) {
+    const title = picture.querySelector('h3'), button = document.createElement('button');
+    const svg = picture.querySelector(':scope > svg'), chart = picture.querySelector('.chart script');
+    const name = title.textContent.replace(/[^\p{L}\p{N}]+/gu, '_').replace(/^_|_$/g, '');
+    button.textContent = svg ? 'SVG' : 'CSV';
+    button.title = svg ? 'save this picture' : 'save the numbers that are drawn';
+    button.onclick = () => {
+      if (svg) return save(`${name}.svg`, 'image/svg+xml', svgOf(svg));
+      const rows = rowsOf(JSON.parse(chart.textContent));
+      save(`${name}.csv`, 'text/csv', rows.map((row) => row.map(cell).join(',') + '\n').join(''));
+    };
+    title.append(button);
+  }
+
   const seen = new IntersectionObserver((entries) => {
     for (const entry of entries) {
       if (!entry.isIntersecting) continue;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "browser.hpp"
@@ -228,6 +229,41 @@ TEST_F(ChartCanvas, WordsOfNarrowStretchesAndCloseMarksStayReadable) {
   EXPECT_THAT(words, testing::Contains(testing::AllOf(testing::StartsWith("7 w"), testing::EndsWith("…"))));
   ASSERT_EQ(marks.size(), 2U);
   EXPECT_GT(std::abs(marks[0].second - marks[1].second), 12.0 * kPixel) << "one word over the other";
+}
+
+/// Presses every button, and finds what it would save: name and text, for an SVG also what an XML reader makes of it.
+const std::string kSave = R"js(
+  const saved = [], texts = new Map();
+  URL.createObjectURL = (blob) => { const key = 'saved:' + texts.size; texts.set(key, blob.text()); return key; };
+  HTMLAnchorElement.prototype.click = function () { saved.push([this.download, texts.get(this.href)]); };
+  document.querySelectorAll('h3 button').forEach((button) => button.click());
+  Promise.all(saved.map(async ([name, text]) => {
+    const xml = new DOMParser().parseFromString(await text, 'image/svg+xml');
+    return {name, text: await text, element: xml.documentElement.nodeName, width: xml.documentElement.getAttribute('width')};
+  })).then((found) => {
+    const out = document.createElement('pre');
+    out.id = 'found';
+    out.textContent = JSON.stringify(found);
+    document.body.append(out);
+  });
+)js";
+
+TEST_F(ChartCanvas, EveryPictureIsSavedByAButton) {
+  Page page("saved");
+  const std::vector<double> x = {0.0, 0.5, 1.0, 1.5}, y = {1.0, 0.25, std::nan(""), -3.0};
+  page.chart({.title = "left knee, torque [Nm]", .lines = {{.name = "measured, \"raw\"", .x = x, .y = y}}});
+  page.lanes({.title = "steps", .lanes = {{"step", {{0.0, 1.5, "stand, then walk", colour::kSky}}}}});
+  page.bars({.title = "errors", .unit = "m", .names = {"pmg"}, .sets = {{.name = "measured", .values = {0.5}}}});
+  const nlohmann::json saved = found_in_browser(browser_, page.html(), "", kSave);
+  ASSERT_EQ(saved.size(), 3U);
+  EXPECT_EQ(saved[0]["name"], "left_knee_torque_Nm.csv");
+  EXPECT_EQ(saved[0]["text"], "time [s],\"measured, \"\"raw\"\"\"\n0,1\n0.5,0.25\n1,\n1.5,-3\n");
+  EXPECT_EQ(saved[1]["name"], "steps.csv");
+  EXPECT_EQ(saved[1]["text"], "row,text,from [s],to [s]\nstep,\"stand, then walk\",0,1.5\n");
+  EXPECT_EQ(saved[2]["name"], "errors.svg");
+  EXPECT_EQ(saved[2]["element"], "svg") << saved[2]["text"];
+  EXPECT_NE(saved[2]["width"], nullptr);
+  EXPECT_THAT(saved[2]["text"].get<std::string>(), testing::HasSubstr("text-anchor: end"));
 }
 
 }  // namespace
