@@ -1,4 +1,3 @@
-// Longer than 300 lines: one run of the controller, from its arguments to its last word.
 #include "controller_program.hpp"
 
 #include <fmt/format.h>

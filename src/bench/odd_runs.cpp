@@ -21,7 +21,7 @@ double rms_rad(const RunPair& pair) { return std::sqrt(pair.mean_square_rad2); }
 
 std::string thousandths(double value) { return fmt::format("{:.3g}e-3", 1e3 * value); }
 
-/// How far the repeats of a condition differ, whatever less than half of them do: of n repeats the h (h - 1) / 2-th
+/// Robust scale of the repeats of a condition, 50 % breakdown: of n repeats the h (h - 1) / 2-th
 /// smallest difference with h = n / 2 + 1, the rank of P. J. Rousseeuw and C. Croux, JASA 88:1273, 1993. 0 without
 /// repeats; copies don't count.
 double usual_difference_rad(const Condition& condition) {

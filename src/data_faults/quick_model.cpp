@@ -154,8 +154,8 @@ std::vector<effects::Unknown> QuickModel::unknowns(const std::vector<calib::Sing
   return found;
 }
 
-/// The best of many points of the unknowns that nobody knows, and of a few gains: one may act by a factor of its
-/// number.
+/// Halton screening of the parameters without a prior, with a few scales of the gains: a drive's gain may be off by a
+/// factor.
 calib::JointModel QuickModel::screened(const std::vector<calib::SingleJoint>& runs,
                                        const std::vector<effects::Unknown>& unknowns) const {
   const std::vector<calib::SingleJoint> few = calib::spread(runs, kScreenedRuns);

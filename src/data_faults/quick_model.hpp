@@ -1,4 +1,4 @@
-// A quick, robust model of a joint whose positions are commanded: what most runs say of it, whatever one run says.
+// A quick, robust model of a joint whose positions are commanded: a robust fit; one faulty run has little influence.
 #pragma once
 
 #include <optional>

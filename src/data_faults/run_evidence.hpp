@@ -19,7 +19,7 @@ struct Explained {
 std::vector<DataFault> clearest(const std::vector<Explained>& explanations);
 
 /// True if a correction that takes ln of a run's error from `before` to `after` makes the run a usual one, or divides
-/// the error so often that nothing else can be meant.
+/// the error by more than `overwhelming_gain`.
 bool mends(const Examined& examined, double before, double after);
 
 /// ln of the corrected run's error, by the model that fits all runs.

@@ -22,7 +22,7 @@ struct Group {
   double value = 0.0;
 };
 
-/// A fit with one factor free, and how well the runs like it.
+/// A fit with one factor free, and the mean fall of ln(error) over the runs.
 struct Tried {
   QuickFit fit;
   double factor = 1.0;

@@ -29,7 +29,7 @@ struct DirectEvidence {
   /// them. evidence::CheckPower says whether that rules out a fitted strength.
   std::vector<std::string> doubted;
   /// Effects that the base model lacks and that a check detects, with their strengths (evidence::measured_strength;
-  /// empty where the check has none). They get a full fit, whatever a linearised look makes of them.
+  /// empty where the check has none). They get a full fit, whatever they explain to first order.
   std::map<std::string, std::vector<double>> evident;
 };
 

@@ -173,7 +173,7 @@ class Explaining {
     }
     if (const auto read_off = measured(effect)) return {effect, *read_off, LookedAt::kRecordings};
     if (search_.stopped()) return {effect, "the search was interrupted before it", LookedAt::kNot};
-    return {effect, "a linearised look sees less in it than in others", LookedAt::kLinearised};
+    return {effect, "not fitted in full: to first order it explains less than others do", LookedAt::kLinearised};
   }
 
   /// Why an effect that is read off the recordings is no cause; nothing for other effects, and where they don't tell.

@@ -90,13 +90,13 @@ std::string EffectSearch::objection(const Trial& trial) const {
   // A second effect that only mends the first one's form leaves a rest itself, or mends what a verdict forgives.
   const bool ends_it = trial.share_of_rest >= options_.nearly_all_of_rest && trial.missed_alone;
   if (!ends_it && amplitude < limits_.of_beginning * std::sqrt(beginning))
-    return "what it explains is small beside what was wrong";
+    return "what it explains is small against the initial residual";
   if (trial.share_of_rest < limits_.of_rest) {
-    return fmt::format("it explains {:.0f} % of what is left, as others' forms not being quite right would",
+    return fmt::format("it explains {:.0f} % of what is left: model-form errors of other effects can explain as much",
                        100.0 * trial.share_of_rest);
   }
   if (const std::string why = doubt(trial); !why.empty()) return why;
-  return refuted(trial) ? "the recordings would show it without a model at the strength that fits, and don't" : "";
+  return refuted(trial) ? "ruled out: a model-free check should detect this strength and does not" : "";
 }
 
 /// Why the effect is no cause whatever it gains on average, or "": worse where one kind of folds is left out, its

@@ -50,7 +50,7 @@ struct ShapeOptions {
       0.1, "", "a delay or a limit is found if it removes this share of the balance's squared residual", kAssumed};
   work::Threshold no_limit_gain{0.05, "", "a rate limit is ruled out if it removes surely less than this share",
                                 kAssumed};
-  work::Threshold least_delay_s{0.002, "s", "a shorter delay is none", kAssumed};
+  work::Threshold least_delay_s{0.002, "s", "shorter delays are reported as zero", kAssumed};
   work::Threshold least_delay_samples{
       0.5, "samples",
       "nor is a delay of fewer samples: a recording does not give the time of a command within a sample", kAssumed};
@@ -73,7 +73,7 @@ struct OnsetOptions {
       0.2, "", "the fit ends at this share of the step: the acceleration is constant only at first", kAssumed};
   work::Threshold longest_s{0.3, "s", "a joint that has not got so far by then is stuck or slow", kAssumed};
   work::CountThreshold fewest_steps{4, "", "steps that the check needs", kAssumed};
-  work::Threshold least_delay_s{0.003, "s", "a shorter delay is none", kAssumed};
+  work::Threshold least_delay_s{0.003, "s", "shorter delays are reported as zero", kAssumed};
   work::Threshold least_delay_samples{0.75, "samples",
                                       "nor is a delay of fewer samples: a recording gives neither the time of the "
                                       "command nor that of the reading within a sample",

@@ -22,7 +22,7 @@ class SourceRates {
   /// Takes one message into account. False: this operator has sent too many, or there are too many of them. Those
   /// without a place share one allowance for stops.
   bool admit(const control::Source& source, MessageKind kind, std::int64_t now_ns) noexcept;
-  /// A stop that anybody may have sent: it shares that allowance, whatever its name is, and takes nobody's place.
+  /// A stop that anybody may have sent: shares the unknown-sender allowance, occupies no slot.
   bool admit_stranger(std::int64_t now_ns) noexcept { return admit(others_, MessageKind::kStop, now_ns); }
 
  private:

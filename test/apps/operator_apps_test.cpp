@@ -1,5 +1,4 @@
 // pmg_send and pmg_watch, used as by their users: alone, without a network, and against a pmg_controller over UDP.
-// Longer than 300 lines: every promise of two programs, over one rig.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>

@@ -1,6 +1,5 @@
 // Faults of drives, wires and threads, and after how many bus cycles the drives are damped: the table of
 // docs/reference/safety.md.
-// Longer than 300 lines: every row of the table, over one emulated robot.
 #include "can/can_hal.hpp"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,4 @@
 // CiA 402 drives behind CANopen: their set-up, their cycle, and after how many bus cycles a fault is told.
-// Longer than 300 lines: every promise about these drives, over one rig.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

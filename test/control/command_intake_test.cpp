@@ -1,4 +1,3 @@
-// Longer than 300 lines: every way of a source to come, to drive and to be forgotten, over one intake.
 #include "control/command_intake.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,5 @@
 // Holding, stopping and braking besides the table of faults: frozen threads, stops from other sources, silent
 // operators, late policies, through bus cycle, guard, control cycle and tick.
-// Longer than 300 lines: every part that may be late or silent, over one rig.
 #include <gtest/gtest.h>
 
 #include <limits>

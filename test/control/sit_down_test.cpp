@@ -1,5 +1,4 @@
 // The soft end of a fault: where it is allowed, when it is broken off, and that it delays no stop.
-// Longer than 300 lines: every way into it and out of it, over one rig.
 #include "control/sit_down.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// docs/reference/safety.md, row by row. Longer than 300 lines, as the page has many rows.
+// docs/reference/safety.md, row by row.
 #include "control/supervisor.hpp"
 
 #include <gtest/gtest.h>

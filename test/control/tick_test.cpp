@@ -1,4 +1,4 @@
-// The promises of one tick. Longer than 300 lines: they share one driven robot.
+// The promises of one tick.
 #include "control/tick.hpp"
 
 #include <gtest/gtest.h>

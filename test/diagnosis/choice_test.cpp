@@ -1,5 +1,4 @@
 // Rules by which effects are taken and left: each test fails where its rule is disabled.
-// Longer than 300 lines: every rule, over one simulated bench.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -182,7 +182,7 @@ TEST_F(Rules, EveryEffectThatIsNoCauseHasAReasonAndSaysHowItWasLookedAt) {
   std::map<LookedAt, int> count;
   for (const Rejected& one : found.rejected) {
     EXPECT_FALSE(one.why.empty()) << one.effect;
-    EXPECT_EQ(one.looked_at == LookedAt::kLinearised, one.why.find("linearised look") != std::string::npos)
+    EXPECT_EQ(one.looked_at == LookedAt::kLinearised, one.why.find("to first order") != std::string::npos)
         << one.effect;
     ++count[one.looked_at];
   }

@@ -1,6 +1,6 @@
 // An EtherCAT slave's controller without sockets: datagrams, registers, EEPROM, states, sync managers, their watchdog,
 // FMMUs, mailbox, distributed clock. It follows ETG.1000.4 and ETG.1000.6, not the master's code. What the slave does
-// comes from a derived class. Longer than 300 lines: a slave's controller is one memory that all of these share.
+// comes from a derived class.
 #pragma once
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // The master against slaves that this project did not write: KickCAT's emulated slave controllers and CiA 402 motors
 // (its program network_simulator) on the other end of a cable, in lockstep. A cycle goes on when its frames are back,
 // however long that takes, so counts and positions decide. Only the slaves' own watchdog of 20 ms runs in real time:
-// where this computer held the outputs up for so long, the test says so, and nothing was shown. Longer than 300 lines:
-// every promise, over one simulator. foreign_slaves_test.sh starts this; elsewhere these tests are skipped.
+// where this computer held the outputs up for so long, the test says so, and nothing was shown.
+// foreign_slaves_test.sh starts this; elsewhere these tests are skipped.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>

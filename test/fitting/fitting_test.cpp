@@ -1,5 +1,4 @@
-// The core of fitting, on problems whose answers are known. Longer than 300 lines: every part of it, on the same
-// problems.
+// The core of fitting, on problems whose answers are known.
 #include <gtest/gtest.h>
 
 #include <cmath>

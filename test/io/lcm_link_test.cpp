@@ -1,5 +1,4 @@
 // LcmLink: one clear line for every error of an address or a network, and no loss on a good one.
-// Longer than 300 lines: every error of an address, a network and a datagram.
 #include "io/lcm_link.hpp"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,4 @@
 // A robot driven by keys over the network: from limp to walking and to rest, and the things that must never happen.
-// Longer than 300 lines: the tests share one keyboard and one controller.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The forms of src/model/actuator_parameters.hpp are those of the literature: each moves a joint as the plants of this
-// folder do, which share no code with it. Longer than 300 lines: one entry a form.
+// folder do, which share no code with it.
 #include <gtest/gtest.h>
 
 #include <cmath>

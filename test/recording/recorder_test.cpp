@@ -1,5 +1,5 @@
 // The files of a run: every tick is in them, in spite of failures of disk, log thread or process; and the half minute
-// before a fault. Longer than 300 lines: each kind of trouble stands beside the others.
+// before a fault.
 #include "recording/recorder.hpp"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // Z1's own policy in MuJoCo: lifted, set down, dropped, with dead torque readings. Each row of the table in
-// docs/reference/safety.md about feet that carry nothing. Longer than 300 lines, as these rows are many.
+// docs/reference/safety.md about feet that carry nothing.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
