@@ -15,13 +15,10 @@ constexpr double kCharacter = 6.9;  // of 12 px sans-serif fonts: Open Sans' and
 constexpr double kSquare = 16.0, kBetween = 18.0;
 constexpr int kRow = 18;
 
-/// Bytes that begin a character in UTF-8.
-bool begins(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U; }
-
 }  // namespace
 
 double text_width(const std::string& text) {
-  return kCharacter * static_cast<double>(std::ranges::count_if(text, begins));
+  return kCharacter * static_cast<double>(std::ranges::count_if(text, begins_character));
 }
 
 std::string fitted(const std::string& text, double width) {
@@ -29,7 +26,7 @@ std::string fitted(const std::string& text, double width) {
   std::string shown;
   double used = 2.0 * kCharacter;  // the ellipsis
   for (const char byte : text) {
-    if (begins(byte)) used += kCharacter;
+    if (begins_character(byte)) used += kCharacter;
     if (used > width) break;
     shown += byte;
   }

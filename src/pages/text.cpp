@@ -18,7 +18,7 @@ std::string without_trailing_zeros(std::string text) {
 
 /// Columns that a text takes on a console; every code point takes one.
 std::size_t width(std::string_view text) {
-  return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
+  return static_cast<std::size_t>(std::ranges::count_if(text, begins_character));
 }
 
 }  // namespace
@@ -70,6 +70,8 @@ std::string number(double value) {
   return without_trailing_zeros(fmt::format("{:.{}f}", value, std::max(0, kDigits - before_point)));
 }
 
+bool begins_character(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U; }
+
 std::vector<std::string> console_lines(const Table& table) {
   std::vector<std::string> names = table.header, units(table.header.size());
   for (std::size_t c = 0; c < names.size(); ++c) {
@@ -81,8 +83,9 @@ std::vector<std::string> console_lines(const Table& table) {
   std::vector<std::vector<std::string>> rows = {names, units};
   if (std::ranges::all_of(units, &std::string::empty)) rows.pop_back();
   rows.insert(rows.end(), table.rows.begin(), table.rows.end());
-  std::vector<std::size_t> widths(names.size());
+  std::vector<std::size_t> widths;
   for (const std::vector<std::string>& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
     for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], width(row[c]));
   }
   std::vector<std::string> lines;

@@ -19,6 +19,9 @@ std::string escape_script(std::string json);
 /// and very large ones; "-" if the number isn't finite.
 std::string number(double value);
 
+/// True for a byte that begins a character in UTF-8.
+bool begins_character(char byte);
+
 /// The table for a console: columns aligned, the first one at its left end; a header's unit, " [m/s]", stands below it.
 /// Its last line is empty.
 std::vector<std::string> console_lines(const Table& table);

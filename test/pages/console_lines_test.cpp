@@ -23,6 +23,11 @@ TEST(ConsoleLines, CountALetterOnceWhateverItsBytes) {
               ElementsAre("Gelenk     q", "Hüfte      1", "Schenkel  12", ""));
 }
 
+TEST(ConsoleLines, ARowMayBeLongerThanItsHeader) {
+  EXPECT_THAT(console_lines({.header = {"a"}, .rows = {{"1", "22"}, {"3", "4"}}}),
+              ElementsAre("a", "1  22", "3   4", ""));
+}
+
 TEST(ConsoleLines, ARowMayBeShorterThanItsHeader) {
   EXPECT_THAT(console_lines({.header = {"a", "b"}, .rows = {{"1"}, {}}}), ElementsAre("a  b", "1", "", ""));
 }

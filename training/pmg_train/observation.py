@@ -51,8 +51,9 @@ class Observation:
         frames = [[(term["name"], term["scale"], term["elements"]) for term in terms] for terms in ages.values()]
         if any(frame != frames[0] for frame in frames):
             raise ValueError(f"observation: frames of {self.ages} ticks hold different terms; expected the same")
-        self.older = [self._term(term, joints, description["action_joints"], stand) for term in next(iter(ages.values()), [])]
-        size = sum(term["size"] for term in next(iter(ages.values()), []))
+        older = next(iter(ages.values()), [])
+        self.older = [self._term(term, joints, description["action_joints"], stand) for term in older]
+        size = sum(term["size"] for term in older)
         self.history = stand.new_zeros(worlds, max(self.ages, default=0), size)  # newest first
 
     @staticmethod
