@@ -217,7 +217,7 @@ TEST_F(ChartCanvas, WordsOfNarrowStretchesAndCloseMarksStayReadable) {
               .lanes = {{"step",
                          {{0.0, 60.0, "stand for a while", colour::kSky},
                           {60.0, 65.0, "7 walk forward slowly", colour::kGrey},
-                          {65.0, 67.0, "8 stop", colour::kSky}}}},
+                          {65.0, 68.0, "8 stop", colour::kSky}}}},
               .marks = {{30.0, "first fault"}, {30.5, "second fault"}}});
   const nlohmann::json drawn = drawn_charts(page, browser_);
   std::vector<std::string> words;
