@@ -12,6 +12,7 @@
 #include "calib/fit_results.hpp"
 #include "calib/joint_runs.hpp"
 #include "data_faults/data_faults_report.hpp"
+#include "evidence/inverse_dynamics.hpp"
 #include "excitation_command.hpp"
 #include "io/whole_file.hpp"
 #include "json_output.hpp"
@@ -230,7 +231,7 @@ int calibrate(const Arguments& arguments) {
   results.noise_floor = noise_floor(fitted, scored);
   std::vector<bench::BenchRun> runs;
   for (const calib::SingleJoint& joint : fitted) runs.push_back(joint.run());
-  results.inverse = calib::inverse_dynamics(bench, runs);
+  results.inverse = evidence::inverse_dynamics(bench, runs);
   if (results.inverse && bench.law == bench::DriveLaw::kCascadePd && !arguments.only)
     results.inverse_taken = calib::take_inverse_dynamics(*results.inverse, bench, start, unknowns);
   const calib::FitProblem problem(unknowns, start, std::move(fitted));

@@ -9,13 +9,11 @@
 
 #include "calib/fit_confidence.hpp"
 #include "calib/fit_results.hpp"
-#include "calib/inverse_dynamics.hpp"
 #include "calib/synthetic_bench.hpp"
 
 namespace pmg {
 namespace {
 
-using testing::AllOf;
 using testing::HasSubstr;
 
 calib::JointModel truth() {
@@ -351,76 +349,6 @@ TEST(FitProblem, PointsAreWhatModelsAre) {
   for (const calib::FitParameter& p : joint.parameters()) {
     EXPECT_NEAR(calib::value(back, p.name), calib::value(model, p.name), 1e-12) << p.name;
   }
-}
-
-constexpr double kMass_kg = 95.0, kViscous_N_s_per_m = 200.0, kForwards_N = 17.0, kBackwards_N = 23.0;
-
-/// Ten seconds of a linear drive's sines, the force so much later or earlier than the position, with noise of 20 mV.
-std::pair<bench::Bench, bench::BenchRun> linear_drive(double force_late_s, double rate_hz, double pace = 1.0) {
-  bench::Bench bench;
-  bench.rig = bench::Rig::kLinear;
-  bench.law = bench::DriveLaw::kCascadePd;
-  bench.sample_rate_hz = rate_hz;
-  bench.known.drive.torque_per_unit_Nm = 35.0;
-  std::mt19937 random(3);
-  std::normal_distribution<double> noise_V(0.0, 0.02);
-  bench::BenchRun run;
-  for (int k = 0; k < static_cast<int>(10.0 * rate_hz); ++k) {
-    const double t = k / rate_hz, slow = 3.0 * pace, fast = 11.0 * pace;
-    run.recording.t_s.push_back(t);
-    run.recording.q_rad.push_back(-0.1 / slow * std::cos(slow * t) - 0.05 / fast * std::cos(fast * t));
-    const double then = t - force_late_s;
-    const double v = 0.1 * std::sin(slow * then) + 0.05 * std::sin(fast * then),
-                 a = 0.1 * slow * std::cos(slow * then) + 0.05 * fast * std::cos(fast * then);
-    const double force_N = kMass_kg * a + kViscous_N_s_per_m * v + (v > 0.0 ? kForwards_N : -kBackwards_N);
-    run.recording.drive_V.push_back(force_N / 35.0 + noise_V(random));
-  }
-  return {bench, run};
-}
-
-// Noise of 20 mV against volts: least squares finds the plant to a percent.
-TEST(InverseDynamics, FindsALinearDrivesParameters) {
-  auto [bench, run] = linear_drive(0.0, 1000.0);
-  const auto found = calib::inverse_dynamics(bench, {run});
-  ASSERT_TRUE(found.has_value());
-  EXPECT_NEAR(found->armature_kg_m2.value, kMass_kg, 0.01 * kMass_kg);
-  EXPECT_NEAR(found->viscous_Nm_s_per_rad.value, kViscous_N_s_per_m, 0.02 * kViscous_N_s_per_m);
-  EXPECT_NEAR(found->coulomb_Nm.value, 20.0, 0.3);
-  EXPECT_NEAR(found->offset_Nm.value, 3.0, 0.1);
-  EXPECT_LT(found->armature_kg_m2.deviation, 1.0);
-  EXPECT_EQ(calib::meaning_of_negative(*found), "");
-  run.recording.drive_V.clear();
-  EXPECT_FALSE(calib::inverse_dynamics(bench, {run}).has_value());
-}
-
-// Friction below zero is no friction: the tool says what is wrong with the recording instead, and takes nothing of it.
-TEST(InverseDynamics, SaysWhatNegativeFrictionMeans) {
-  // 50 ms too early, acceleration times mass passes for -50 ms (11 rad/s)^2 mass of viscous friction.
-  auto [bench, run] = linear_drive(-0.05, 1000.0);
-  const auto early = calib::inverse_dynamics(bench, {run});
-  ASSERT_TRUE(early.has_value());
-  ASSERT_LT(early->viscous_Nm_s_per_rad.value, 0.0);
-  EXPECT_THAT(calib::meaning_of_negative(*early),
-              AllOf(HasSubstr("Viscous friction below zero: no joint has that"), HasSubstr("early or late")));
-  calib::JointModel start;
-  std::vector<calib::FitParameter> unknowns = {calib::fit_parameter("transmission.armature_kg_m2", bench)};
-  EXPECT_FALSE(calib::take_inverse_dynamics(*early, bench, start, unknowns));
-  EXPECT_EQ(start.actuator, model::ActuatorParameters{});
-  EXPECT_EQ(unknowns.size(), 4U) << "inertia, both frictions and the offset: rollouts look for them";
-
-  // Sines of 7 Hz and 25 Hz are too fast for 80 samples a second.
-  auto [slow_bench, slow_run] = linear_drive(-0.01, 80.0, 14.0);
-  const auto coarse = calib::inverse_dynamics(slow_bench, {slow_run});
-  ASSERT_TRUE(coarse.has_value());
-  ASSERT_FALSE(calib::impossible_estimates(*coarse).empty());
-  EXPECT_THAT(calib::meaning_of_negative(*coarse), HasSubstr("too fast for 80 samples a second"));
-
-  calib::InverseDynamics small;
-  small.viscous_Nm_s_per_rad = {-0.01, 0.02};
-  EXPECT_THAT(calib::meaning_of_negative(small),
-              AllOf(HasSubstr("Viscous friction"), HasSubstr("too small to be seen")));
-  EXPECT_TRUE(calib::take_inverse_dynamics(small, bench, start, unknowns));
-  EXPECT_EQ(start.actuator.friction.viscous_Nm_s_per_rad, 0.0);
 }
 
 TEST(FitResults, UnitsAreThoseOfTheRig) {
