@@ -23,11 +23,6 @@ struct FitParameter {
 /// std::invalid_argument that lists the names.
 FitParameter fit_parameter(const std::string& name, const bench::Bench& bench);
 
-/// (word of the command line: damping, friction, delay, rate_limit, ..., or a parameter's own name) => (parameter
-/// names). Throws std::invalid_argument that lists the words.
-std::vector<std::string> effect_parameters(const std::string& word);
-std::vector<std::string> effect_words();
-
 /// The paper's parameters (III-C.1: Kp, Kd, I) for this bench's drive law, and those that bench.yaml calls unknown.
 std::vector<std::string> basic_parameters(const bench::Bench& bench);
 

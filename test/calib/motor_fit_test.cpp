@@ -27,21 +27,19 @@ calib::JointModel truth() {
   return model;
 }
 
-calib::FitProblem problem(const std::vector<std::string>& words, double noise_rad, int runs = 4) {
+calib::FitProblem problem(const std::vector<std::string>& names, double noise_rad, int runs = 4) {
   const bench::Bench bench = test::pd_bench(true);
   std::vector<calib::FitParameter> parameters;
   for (const std::string& name : calib::basic_parameters(bench))
     parameters.push_back(calib::fit_parameter(name, bench));
-  for (const std::string& word : words) {
-    for (const std::string& name : calib::effect_parameters(word))
-      parameters.push_back(calib::fit_parameter(name, bench));
-  }
+  for (const std::string& name : names) parameters.push_back(calib::fit_parameter(name, bench));
   return {parameters, {}, test::record(bench, truth(), runs, noise_rad)};
 }
 
 // 1 mrad of noise on 1200 samples moves these parameters by less than a percent.
 TEST(MotorFit, FindsWhatTheJointIsMadeOf) {
-  const calib::FitProblem joint = problem({"friction", "damping", "delay"}, 1e-3);
+  const calib::FitProblem joint =
+      problem({"friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad", "command.delay_s"}, 1e-3);
   const calib::Fit fit = calib::fit(joint, {.starts = 4, .threads = 2});
   for (const calib::FitParameter& p : joint.parameters()) {
     const double expected = calib::value(truth(), p.name);
@@ -54,7 +52,7 @@ TEST(MotorFit, FindsWhatTheJointIsMadeOf) {
 // almost as well. 0.4 mrad of noise leave a few percent of that factor open.
 TEST(MotorFit, FindsTheFactorOfAllTorquesUnderALightLoad) {
   const bench::Bench bench = test::pd_bench(true);
-  const calib::FitProblem usual = problem({"friction", "damping"}, 0.0);
+  const calib::FitProblem usual = problem({"friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad"}, 0.0);
   calib::JointModel light = truth();
   light.actuator.command.delay_s = 0.0;
   std::mt19937 random(1);
@@ -136,7 +134,8 @@ TEST(MotorFit, KeepsTheBestWhenInterrupted) {
 
 // Of 6 parameters with honest deviations, one in a thousand misses by more than 4.
 TEST(Confidence, CoversTheTruth) {
-  const calib::FitProblem joint = problem({"friction", "damping", "delay"}, 1e-3);
+  const calib::FitProblem joint =
+      problem({"friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad", "command.delay_s"}, 1e-3);
   const calib::Fit fit = calib::fit(joint, {.starts = 4, .threads = 2});
   const std::vector<calib::Confidence> confidence = calib::confidence(joint, fit.point, 2);
   for (std::size_t i = 0; i < confidence.size(); ++i) {
@@ -168,7 +167,8 @@ TEST(Confidence, CountsTheLastSampleOfEachRun) {
 
 TEST(Confidence, SaysWhatTheRunsCantTell) {
   // Both runs have the same kd, and none a commanded speed.
-  const calib::FitProblem joint = problem({"damping", "torque_speed"}, 1e-3, 2);
+  const calib::FitProblem joint =
+      problem({"friction.viscous_Nm_s_per_rad", "drive.stall_torque_Nm", "drive.no_load_rad_s"}, 1e-3, 2);
   calib::JointModel model = truth();
   model.actuator.drive.stall_torque_Nm = 400.0;  // far from all that the joint does
   model.actuator.drive.no_load_rad_s = 60.0;
@@ -269,7 +269,8 @@ TEST(UnknownLoad, IsThatOfBenchYamlAndOfAllLoadsOrNone) {
 
 // A search that stopped far from its optimum: the residual's slope says how far.
 TEST(Confidence, OfAnUnfinishedFitReachesToWhereTheFitWouldEnd) {
-  const calib::FitProblem joint = problem({"friction", "damping", "delay"}, 1e-4);
+  const calib::FitProblem joint =
+      problem({"friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad", "command.delay_s"}, 1e-4);
   calib::JointModel near = truth();
   near.actuator.transmission.armature_kg_m2 *= 1.05;
   near.actuator.friction.coulomb_Nm *= 0.97;
@@ -307,7 +308,8 @@ constexpr int kWithoutEnd = 1 << 30;
 
 TEST(FitWorth, GreenOnlyWhereTheFitEndedAndExplainsTheMotion) {
   const bench::Bench bench = test::pd_bench(true);
-  const calib::FitProblem joint = problem({"friction", "damping", "delay"}, 1e-3);
+  const calib::FitProblem joint =
+      problem({"friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad", "command.delay_s"}, 1e-3);
   const calib::FitResults whole = results_of(joint, bench, kWithoutEnd);
   EXPECT_EQ(worth_of(whole).sentence(), "");
   EXPECT_THAT(calib::fit_report(whole).html(), HasSubstr("class=\"verdict good\""));
@@ -317,7 +319,7 @@ TEST(FitWorth, GreenOnlyWhereTheFitEndedAndExplainsTheMotion) {
 
 TEST(FitWorth, ReadingsOfNoiseAreNothingThatAModelExplains) {
   const bench::Bench bench = test::pd_bench(true);
-  const calib::FitProblem joint = problem({"friction", "damping"}, 1e-3);
+  const calib::FitProblem joint = problem({"friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad"}, 1e-3);
   std::mt19937 random(3);
   std::normal_distribution<double> noise(0.0, 0.3);
   std::vector<calib::SingleJoint> runs;
@@ -332,7 +334,8 @@ TEST(FitWorth, ReadingsOfNoiseAreNothingThatAModelExplains) {
 
 TEST(FitWorth, OfFaultyDataAndOfAFitThatGetsNoBetter) {
   const bench::Bench bench = test::pd_bench(true);
-  const calib::FitProblem joint = problem({"friction", "damping", "delay"}, 1e-3);
+  const calib::FitProblem joint =
+      problem({"friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad", "command.delay_s"}, 1e-3);
   calib::FitResults results = results_of(joint, bench, kWithoutEnd);
   results.fitted.before = results.fitted.after;
   expect_everywhere(results, "NO BETTER: ", work::Grade::kNoBetter);
@@ -341,7 +344,8 @@ TEST(FitWorth, OfFaultyDataAndOfAFitThatGetsNoBetter) {
 }
 
 TEST(FitProblem, PointsAreWhatModelsAre) {
-  const calib::FitProblem joint = problem({"friction", "zero_offset", "rate_limit"}, 0.0, 1);
+  const calib::FitProblem joint =
+      problem({"friction.coulomb_Nm", "sensor.zero_offset_rad", "command.rate_limit_rad_s"}, 0.0, 1);
   calib::JointModel model = truth();
   model.actuator.sensor.zero_offset_rad = -0.02;
   model.actuator.command.rate_limit_rad_s = 5.0;
