@@ -157,6 +157,8 @@ double FitProblem::loss(std::span<const double> point, unsigned threads) const {
   }
 }
 
+void FitProblem::expect_simulated(std::span<const double> point) const { runs_.front().rollout(model_at(point)); }
+
 fitting::Problem FitProblem::least_squares(unsigned threads) const {
   fitting::Problem problem;
   problem.residuals = [this, threads](const Eigen::VectorXd& point) {

@@ -55,6 +55,9 @@ class FitProblem {
   /// [rad^2]; 1e6 if the model is invalid. Does not depend on the number of threads.
   double loss(std::span<const double> point, unsigned threads = 1) const;
 
+  /// Throws std::invalid_argument that says why the model at the point can't be simulated, if it can't.
+  void expect_simulated(std::span<const double> point) const;
+
   /// The same problem for Gauss-Newton steps; coordinates are points of the cube. Refers to this object.
   fitting::Problem least_squares(unsigned threads) const;
 

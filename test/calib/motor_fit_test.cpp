@@ -123,6 +123,23 @@ TEST(MotorFit, IsNeverWorseThanItsStart) {
   EXPECT_EQ(fit.loss_rad2, misleading.loss(fit.point));
 }
 
+// Two masses of which one is none: no stiffness of the shaft helps.
+TEST(MotorFit, SaysWhyNoModelWithinTheRangesCanBeSimulated) {
+  const calib::FitProblem usual = problem({}, 0.0, 2);
+  calib::JointModel without_rotor = truth();
+  without_rotor.actuator.transmission.armature_kg_m2 = 0.0;
+  const bench::Bench bench = test::pd_bench(true);
+  const calib::FitProblem shaft({calib::fit_parameter("transmission.stiffness_Nm_per_rad", bench),
+                                 calib::fit_parameter("transmission.damping_Nm_s_per_rad", bench)},
+                                without_rotor, usual.runs());
+  try {
+    calib::fit(shaft, {.starts = 1});
+    ADD_FAILURE() << "fitted";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), HasSubstr("needs an armature"));
+  }
+}
+
 TEST(MotorFit, KeepsTheBestWhenInterrupted) {
   const calib::FitProblem joint = problem({}, 0.0, 2);
   int calls = 0;
