@@ -75,7 +75,7 @@ TEST_P(KnownMotor, ComesBackWithinOnePercent) {
     arguments.insert(arguments.end(), {"--motor", at("motor.yaml")});
   }
   ASSERT_EQ(run("pmg_sil", arguments), 0) << err_;
-  ASSERT_EQ(run("pmg_calibrate_motor", {at("recorded"), "--also", "friction", "damping", "--starts", "3", "--threads",
+  ASSERT_EQ(run("pmg_calibrate_motor", {at("recorded"), "--also", "coulomb", "viscous", "--starts", "3", "--threads",
                                         "2", "--out", at("fit")}),
             0)
       << err_;
@@ -113,7 +113,7 @@ TEST_F(RobotBench, ShowsWhatIsWornInTheExamplesKnee) {
       0)
       << err_;
   ASSERT_EQ(run("pmg_calibrate_motor",
-                {at("knee"), "--also", "friction", "damping", "--threads", "2", "--out", at("calibrated")}),
+                {at("knee"), "--also", "coulomb", "viscous", "--threads", "2", "--out", at("calibrated")}),
             0)
       << err_;
   ASSERT_EQ(run("pmg_sil", {"--robot", "z1", "--bench", "left_knee", "--excitation", at("excitation"), "--motor",

@@ -1,11 +1,11 @@
-// What a diagnosis said of a hidden plant, against what was planted.
+// The causes that a diagnosis named, against what was planted.
 #pragma once
 
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-namespace pmg::hidden {
+namespace pmg::literature {
 
 /// Effects that move the held-out error by at least so many noise floors have to be found; weaker ones may be.
 inline constexpr double kStrong_floors = 2.0;
@@ -21,8 +21,7 @@ struct ScoredParameter {
 /// One plant's row of the table.
 struct Score {
   std::uint64_t seed = 0;
-  std::string kind, planted, said;  ///< texts for people
-  std::string verdict;
+  std::string kind, verdict;
   bool strong = false;     ///< counts
   bool named = false;      ///< found it and nothing else; ambiguous with the truth among what can't be told apart
   bool ambiguous = false;  ///< as the verdict is
@@ -36,4 +35,4 @@ struct Score {
 /// asked for and recorded, asked (both as diagnosis.json), seconds.
 Score score(const nlohmann::json& result);
 
-}  // namespace pmg::hidden
+}  // namespace pmg::literature

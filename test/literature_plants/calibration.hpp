@@ -7,7 +7,7 @@
 
 #include "model/actuator_parameters.hpp"
 
-namespace pmg::hidden {
+namespace pmg::literature {
 
 /// A parameter of motor.yaml that the calibration fits, and the size of a usual change.
 struct CalibratedParameter {
@@ -24,4 +24,4 @@ model::ActuatorParameters calibrated(model::ActuatorParameters model, const std:
 double rollout_error_rad(const model::ActuatorParameters& model, const std::filesystem::path& bench,
                          const std::string& filter);
 
-}  // namespace pmg::hidden
+}  // namespace pmg::literature

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace pmg::hidden {
+namespace pmg::literature {
 
 /// The standard fixes mt19937_64's numbers, not those of its distributions; these are our own.
 class Draw {
@@ -35,4 +35,4 @@ class Draw {
   std::mt19937_64 engine_;
 };
 
-}  // namespace pmg::hidden
+}  // namespace pmg::literature

@@ -1,8 +1,8 @@
-#include "blind_plants/promise.hpp"
+#include "promise.hpp"
 
 #include <boost/math/distributions/binomial.hpp>
 
-namespace pmg::hidden {
+namespace pmg::literature {
 
 double Promise::chance() const {
   if (of == 0) return 1.0;
@@ -11,4 +11,4 @@ double Promise::chance() const {
   return kept == 0 ? 1.0 : boost::math::cdf(boost::math::complement(expected, kept - 1));
 }
 
-}  // namespace pmg::hidden
+}  // namespace pmg::literature

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace pmg::hidden {
+namespace pmg::literature {
 
 /// The rows to fit and to score, in the column `use` of runs.csv.
 inline constexpr const char* kFitFilter = "use == fit";
@@ -20,4 +20,4 @@ inline void write_text(const std::filesystem::path& file, const std::string& tex
   if (!stream) throw std::runtime_error(file.string() + " cannot be written");
 }
 
-}  // namespace pmg::hidden
+}  // namespace pmg::literature

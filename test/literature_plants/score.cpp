@@ -1,12 +1,10 @@
-#include "blind_plants/score.hpp"
-
-#include <fmt/format.h>
+#include "score.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
-namespace pmg::hidden {
+namespace pmg::literature {
 
 namespace {
 
@@ -14,7 +12,7 @@ using Value = nlohmann::json;
 using Names = std::set<std::string>;
 
 /// Of each effect its names: its own, and those of effects that are the same on its rig.
-struct Planted {
+struct PlantedNames {
   std::vector<Names> all, strong;
 };
 
@@ -26,8 +24,8 @@ bool meets_any(const Names& names, const std::vector<Names>& others) {
   return std::any_of(others.begin(), others.end(), [&](const Names& one) { return meets(names, one); });
 }
 
-Planted planted(const Value& truth) {
-  Planted names;
+PlantedNames planted(const Value& truth) {
+  PlantedNames names;
   for (const Value& effect : truth.at("effects")) {
     Names one = {effect.at("effect").get<std::string>()};
     if (effect.contains("same_here")) {
@@ -53,14 +51,14 @@ std::vector<Names> suspects(const Value& diagnosis) {
 }
 
 /// Every strong effect is among the suspects, one cause each, and every cause has a planted effect among its suspects.
-bool contains_truth(const Planted& truth, const Value& diagnosis) {
+bool contains_truth(const PlantedNames& truth, const Value& diagnosis) {
   const std::vector<Names> all = suspects(diagnosis);
   return std::all_of(all.begin(), all.end(), [&](const Names& names) { return meets_any(names, truth.all); }) &&
          std::all_of(truth.strong.begin(), truth.strong.end(),
                      [&](const Names& names) { return meets_any(names, all); });
 }
 
-bool names_truth(const Planted& truth, const Value& diagnosis) {
+bool names_truth(const PlantedNames& truth, const Value& diagnosis) {
   if (diagnosis.at("verdict") != "found") return false;
   Names named;
   for (const Value& cause : diagnosis.at("causes")) named.insert(cause.at("effect").get<std::string>());
@@ -85,42 +83,19 @@ std::vector<ScoredParameter> scored_parameters(const Value& truth, const Value& 
   return scored;
 }
 
-std::string planted_text(const Value& truth) {
-  std::string text;
-  for (const Value& effect : truth.at("effects")) {
-    text += fmt::format("{}{} ({:.1f})", text.empty() ? "" : ", ", effect.at("effect").get<std::string>(),
-                        effect.at("moves_floors").get<double>());
-  }
-  return text;
-}
-
-std::string said_text(const Value& diagnosis) {
-  std::string text = diagnosis.at("verdict").get<std::string>();
-  for (const Value& cause : diagnosis.at("causes")) {
-    text += (text.find(':') == std::string::npos ? ": " : ", ") + cause.at("effect").get<std::string>();
-    for (const auto& [list, word] : {std::pair{"same_here", " = "}, std::pair{"or_instead", " or "}}) {
-      if (!cause.contains(list)) continue;
-      for (const Value& other : cause.at(list)) text += word + other.get<std::string>();
-    }
-  }
-  return text;
-}
-
 }  // namespace
 
 Score score(const Value& result) {
   const Value &truth = result.at("truth"), &diagnosis = result.at("diagnosis");
-  const Planted names = planted(truth);
+  const PlantedNames names = planted(truth);
   Score s;
   s.seed = truth.at("seed").get<std::uint64_t>();
   s.kind = truth.at("kind").get<std::string>();
-  s.planted = planted_text(truth);
-  s.said = said_text(diagnosis);
   s.verdict = diagnosis.at("verdict").get<std::string>();
   s.strong = !names.strong.empty();
   s.ambiguous = s.verdict == "ambiguous";
   s.named = s.ambiguous ? contains_truth(names, diagnosis) : names_truth(names, diagnosis);
-  s.settled = result.contains("asked") && names_truth(names, result.at("asked"));
+  s.settled = result.contains("asked") && !result.at("asked").is_null() && names_truth(names, result.at("asked"));
   for (const Names& cause : suspects(diagnosis)) {
     s.accused = s.accused || !meets_any(cause, names.all);
   }
@@ -129,4 +104,4 @@ Score score(const Value& result) {
   return s;
 }
 
-}  // namespace pmg::hidden
+}  // namespace pmg::literature

@@ -1,12 +1,12 @@
-#include "blind_plants/calibration.hpp"
+#include "calibration.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
 
-#include "blind_plants/files.hpp"
 #include "calib/fit_problem.hpp"
+#include "files.hpp"
 
-namespace pmg::hidden {
+namespace pmg::literature {
 
 namespace {
 
@@ -78,4 +78,4 @@ double rollout_error_rad(const model::ActuatorParameters& model, const std::file
   return total(calib::errors({.actuator = model}, read(bench, filter), 1)).mean_absolute_rad();
 }
 
-}  // namespace pmg::hidden
+}  // namespace pmg::literature

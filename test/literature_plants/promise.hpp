@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace pmg::hidden {
+namespace pmg::literature {
 
 /// A share that is promised, and how many of how many kept it.
 struct Promise {
@@ -11,8 +11,6 @@ struct Promise {
   bool at_least = true;
   double promised = 0.0;
   int kept = 0, of = 0;
-  double share() const { return of == 0 ? 0.0 : static_cast<double>(kept) / of; }
-  bool holds() const { return of == 0 || (at_least ? share() >= promised : share() <= promised); }
   /// The probability of no better a count than this if the promise just held.
   double chance() const;
   /// False if a diagnosis that just keeps the promise would give so bad a count once in fifty campaigns at most. With
@@ -20,4 +18,4 @@ struct Promise {
   bool is_likely() const { return chance() >= 0.02; }
 };
 
-}  // namespace pmg::hidden
+}  // namespace pmg::literature
