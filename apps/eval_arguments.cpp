@@ -148,7 +148,7 @@ void declare_gait(CLI::App& app, EvalArguments& arguments) {
 void declare_steady(CLI::App& app, EvalArguments& arguments) {
   CLI::App& command = *app.add_subcommand("steady",
                                           "What share of a held command is realised: single velocities, "
-                                          "pairs at 80 % and all three at 60 % of their ranges");
+                                          "pairs at 80 %, all three at 60 % and single ones at 20 % of their ranges");
   declare_robot(command, arguments);
   declare_clips(command, arguments);
   declare_policy(command, arguments);

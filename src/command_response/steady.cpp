@@ -18,18 +18,18 @@ using nlohmann::ordered_json;
 
 constexpr double kStandBeforeWalk_s = 1.5;
 constexpr std::array<const char*, kVelocityChannels> kShortNames = {"vx", "vy", "omega"};
-/// By number of channels: the share of the range that is asked for, and the error that is allowed.
+/// Commands of so many channels: the share of the range that is asked for, and the errors that are allowed.
 struct Asked {
+  std::size_t channels;
   double share, limit;
+  std::optional<double> drift_limit = {};
 };
-constexpr std::array<Asked, kVelocityChannels> kAsked = {{{1.0, 0.03}, {0.8, 0.10}, {0.6, 0.10}}};
+constexpr std::array<Asked, 4> kAsked = {{{1, 1.0, 0.03}, {2, 0.8, 0.10}, {3, 0.6, 0.10}, {1, 0.2, 0.15, 0.05}}};
 
-/// The command with these signs at the share of the ranges that the number of its channels calls for; nothing where a
-/// range has no such side.
-std::optional<HeldCommand> held(const CommandLimits& limits, const std::array<int, kVelocityChannels>& sign) {
-  const auto channels = static_cast<std::size_t>(std::ranges::count_if(sign, [](int s) { return s != 0; }));
-  const Asked& asked = kAsked[channels - 1];
-  HeldCommand made{.text = "", .command = {}, .limit = asked.limit};
+/// The command with these signs; nothing where a range has no such side.
+std::optional<HeldCommand> held(const CommandLimits& limits, const Asked& asked,
+                                const std::array<int, kVelocityChannels>& sign) {
+  HeldCommand made{.text = "", .command = {}, .limit = asked.limit, .drift_limit = asked.drift_limit};
   for (std::size_t c = 0; c < kVelocityChannels; ++c) {
     if (sign[c] == 0) continue;
     made.command.u[c] = asked.share * (sign[c] > 0 ? limits.upper[c] : limits.lower[c]);
@@ -93,13 +93,15 @@ ordered_json command_json(const Command& command) {
 
 std::vector<HeldCommand> held_commands(const CommandLimits& limits) {
   std::vector<HeldCommand> commands;
-  for (std::size_t channels = 1; channels <= kVelocityChannels; ++channels) {
+  for (const Asked& asked : kAsked) {
     for (int vx = 1; vx >= -1; --vx) {
       for (int vy = 1; vy >= -1; --vy) {
         for (int omega = 1; omega >= -1; --omega) {
           const std::array<int, kVelocityChannels> sign = {vx, vy, omega};
-          if (static_cast<std::size_t>(std::ranges::count_if(sign, [](int s) { return s != 0; })) != channels) continue;
-          if (const auto made = held(limits, sign)) commands.push_back(*made);
+          if (static_cast<std::size_t>(std::ranges::count_if(sign, [](int s) { return s != 0; })) != asked.channels) {
+            continue;
+          }
+          if (const auto made = held(limits, asked, sign)) commands.push_back(*made);
         }
       }
     }
@@ -130,8 +132,10 @@ bool SteadyTest::complete() const {
 }
 
 bool SteadyTest::reached(std::size_t command) const {
+  const HeldCommand& asked = commands[command];
   const HeldResult& result = results[command];
-  return result.survived && worst_error(commands[command], result.did) <= commands[command].limit;
+  if (asked.drift_limit && worst_drift(asked, result.did, limits) > *asked.drift_limit) return false;
+  return result.survived && worst_error(asked, result.did) <= asked.limit;
 }
 
 work::Worth worth_of(const SteadyTest& test) {
@@ -179,6 +183,7 @@ ordered_json to_json(const SteadyTest& test) {
                                 {"error", worst_error(asked, result.did)},
                                 {"drift", worst_drift(asked, result.did, test.limits)},
                                 {"limit", asked.limit},
+                                {"drift_limit", asked.drift_limit ? ordered_json(*asked.drift_limit) : ordered_json()},
                                 {"survived", result.survived},
                                 {"reached", test.reached(i)}});
   }

@@ -16,11 +16,13 @@ namespace pmg::command_response {
 struct HeldCommand {
   std::string text;  ///< for people: "vx +80 %, omega -80 %"
   Command command;
-  double limit = 0.0;  ///< of |did - asked| / |asked|
+  double limit = 0.0;                      ///< of |did - asked| / |asked|
+  std::optional<double> drift_limit = {};  ///< of worst_drift(); nothing: any
 };
 
 /// Each velocity at both ends (limit 3 %), each pair at 80 % of both ranges and all three at 60 % with every
-/// combination of signs (limit 10 %): 6 + 12 + 8 commands where every range has two sides.
+/// combination of signs (limit 10 %), and each velocity alone at 20 %, as beside a table (limit 15 %, which is 3 % of
+/// the range as at its ends; drift 5 %): 6 + 12 + 8 + 6 commands where every range has two sides.
 std::vector<HeldCommand> held_commands(const CommandLimits& limits);
 
 struct HeldResult {

@@ -19,7 +19,9 @@ std::vector<pages::Table> tables_of(const SteadyTest& test) {
     table.rows.push_back({asked.text, three(asked.command), three(result.admitted), three(result.did),
                           fmt::format("{:.1f} %", 100.0 * worst_error(asked, result.did)),
                           fmt::format("{:.1f} %", 100.0 * worst_drift(asked, result.did, test.limits)),
-                          fmt::format("{:.0f} %", 100.0 * asked.limit),
+                          asked.drift_limit
+                              ? fmt::format("{:.0f} %, drift {:.0f} %", 100.0 * asked.limit, 100.0 * *asked.drift_limit)
+                              : fmt::format("{:.0f} %", 100.0 * asked.limit),
                           test.reached(i)   ? "reached"
                           : result.survived ? "missed"
                                             : "fell or faulted"});

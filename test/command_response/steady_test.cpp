@@ -19,9 +19,9 @@ const HeldCommand& named(const std::vector<HeldCommand>& commands, const std::st
   return found == commands.end() ? commands.front() : *found;
 }
 
-TEST(Steady, EveryEndEveryPairAndAllThreeAreAskedFor) {
+TEST(Steady, EveryEndEveryPairAllThreeAndSmallOnesAreAskedFor) {
   const std::vector<HeldCommand> commands = held_commands(box());
-  ASSERT_EQ(commands.size(), 26U);
+  ASSERT_EQ(commands.size(), 32U);
   const HeldCommand& back = named(commands, "vx -100 %");
   EXPECT_DOUBLE_EQ(back.command[kVx], -0.5);
   EXPECT_EQ(back.limit, 0.03);
@@ -35,12 +35,17 @@ TEST(Steady, EveryEndEveryPairAndAllThreeAreAskedFor) {
   EXPECT_DOUBLE_EQ(all.command[kVy], -0.21);
   EXPECT_DOUBLE_EQ(all.command[kOmega], -0.48);
   EXPECT_EQ(all.limit, 0.10);
+  EXPECT_FALSE(all.drift_limit);
+  const HeldCommand& small = named(commands, "vx +20 %");
+  EXPECT_DOUBLE_EQ(small.command[kVx], 0.16);
+  EXPECT_EQ(small.limit, 0.15);
+  EXPECT_EQ(small.drift_limit, 0.05);
 }
 
 TEST(Steady, ASideThatTheRobotLacksIsNotAskedFor) {
   CommandLimits limits = box();
   limits.lower[kVx] = 0.0;
-  EXPECT_EQ(held_commands(limits).size(), 26U - 1U - 4U - 4U);
+  EXPECT_EQ(held_commands(limits).size(), 32U - 1U - 4U - 4U - 1U);
 }
 
 TEST(Steady, TheErrorIsTheWorstChannelsShareOfItsCommandAndTheOthersDrift) {
@@ -73,6 +78,21 @@ TEST(Steady, ACommandIsReachedWithinItsLimitByARobotThatStaysUp) {
   EXPECT_FALSE(test.reached(1));
   test.results[1].complete = false;
   EXPECT_FALSE(test.complete());
+}
+
+TEST(Steady, ASmallCommandIsMissedByARobotThatDriftsElsewhere) {
+  SteadyTest test;
+  test.limits = box();
+  test.commands = {named(held_commands(box()), "vx +20 %"), named(held_commands(box()), "vx +100 %")};
+  HeldResult result{.complete = true, .survived = true, .did = {}, .admitted = {}};
+  result.did[kVx] = 0.16;
+  result.did[kVy] = 0.017;  // 4.9 % of its range
+  test.results = {result, result};
+  test.results[1].did[kVx] = 0.8;
+  EXPECT_TRUE(test.all_reached());
+  for (HeldResult& drifting : test.results) drifting.did[kVy] = -0.018;  // 5.1 %
+  EXPECT_FALSE(test.reached(0));
+  EXPECT_TRUE(test.reached(1)) << "at full speed drift is shown, not judged";
 }
 
 // From end to end: what is reported is the simulated robot's motion, neither its command nor its reference. The limits
