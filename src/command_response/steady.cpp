@@ -20,8 +20,8 @@ constexpr double kStandBeforeWalk_s = 1.5;
 constexpr std::array<const char*, kVelocityChannels> kShortNames = {"vx", "vy", "omega"};
 /// Commands of so many channels: the share of the range that is asked for, and the errors that are allowed.
 struct Asked {
-  std::size_t channels;
-  double share, limit;
+  std::size_t channels = 0;
+  double share = 0.0, limit = 0.0;
   std::optional<double> drift_limit = {};
 };
 constexpr std::array<Asked, 4> kAsked = {{{1, 1.0, 0.03}, {2, 0.8, 0.10}, {3, 0.6, 0.10}, {1, 0.2, 0.15, 0.05}}};
