@@ -1,7 +1,7 @@
 """The mean policy of several checkpoints of one run.
 
 Learning never comes to rest: from one checkpoint to the next the same policy drifts to the left, then to the right, and its feet land now
-early, now late. The mean of the weights has neither (training/README.md).
+early, now late. The mean of the weights does less of both (training/README.md).
 """
 
 import torch
