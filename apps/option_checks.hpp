@@ -27,7 +27,9 @@ inline CLI::Validator number_check(const std::string& help, const std::string& e
             double value = 0.0;
             const auto [stop, error] = std::from_chars(begin, end, value);
             const bool good = error == std::errc() && stop == end && std::isfinite(value) && holds(value);
-            return good ? std::string() : fmt::format("'{}' isn't {}", text, expected);
+            const bool comma = error == std::errc() && stop != end && *stop == ',';
+            return good ? std::string()
+                        : fmt::format("'{}' isn't {}{}", text, expected, comma ? "; decimals come behind a point" : "");
           },
           help};
 }

@@ -12,6 +12,8 @@
 #include "calib/fit_results.hpp"
 #include "calib/joint_runs.hpp"
 #include "data_faults/data_faults_report.hpp"
+#include "effects/fit_words.hpp"
+#include "evidence/inverse_dynamics.hpp"
 #include "excitation_command.hpp"
 #include "io/whole_file.hpp"
 #include "json_output.hpp"
@@ -27,20 +29,20 @@ using namespace pmg;
 
 enum ExitCode { kOk = 0, kBadInput = 2, kInterrupted = 130 };
 
-constexpr const char* kFooter = R"(
+constexpr const char* kBeforeWords = R"(
 BENCH is a folder of bench.yaml, runs.csv and runs/ (docs/reference/file-formats.md). Writes DIR/motor.yaml (what
 pmg_sil --motor reads), DIR/fit.json, DIR/report.html and DIR/fit.svg. Fitted are the drive's gain and damping, the rotor's inertia, whatever
-bench.yaml calls unknown, and what --also names: damping, friction, stribeck, load_friction, asymmetry, presliding,
-delay, rate_limit, hold, dead_band, gain, supply_sag, torque_speed, brake, zero_offset, sensor_lag, hysteresis,
-eccentricity, quantisation, velocity_lag, backlash, compliance, cogging, offset, thermal_drift, self_heating, inertia,
-gravity, or a parameter of motor.yaml by its own name.
+bench.yaml calls unknown, and what --also names: a parameter of motor.yaml by its own name, or an effect,
+  )";
+
+constexpr const char* kAfterWords = R"(
 
 With --make-excitation nothing is fitted: DIR is what to record, steps and smooth segments within limits (commands/,
 runs.csv), for pmg_sil --bench, pmg_controller --bench, or a rig of your own.
 
 Example:
   pmg_calibrate_motor --make-excitation --robot z1 --joint left_knee --out out/excitation
-  pmg_calibrate_motor data/bench/servo --also damping friction delay --fit "repeat == 0" --score "repeat == 1" --out out/servo
+  pmg_calibrate_motor data/bench/servo --also viscous coulomb delay --fit "repeat == 0" --score "repeat == 1" --out out/servo
 
 Exit codes: 0 fitted, 1 fitted but off its data or no better than where it started (the first line says which), 2 bad
 input or output, among it faults of the data, 130 interrupted (what was found until then is kept).)";
@@ -55,8 +57,16 @@ struct Arguments {
   apps::ExcitationCommand excitation;
 };
 
+/// So many to a line that each fits a console.
+std::string lines_of(const std::vector<std::string>& words) {
+  constexpr std::size_t kWords = 8;
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) text += (i == 0 ? "" : i % kWords == 0 ? ",\n  " : ", ") + words[i];
+  return text;
+}
+
 void declare(CLI::App& app, Arguments& arguments) {
-  app.footer(kFooter);
+  app.footer(kBeforeWords + lines_of(effects::fit_words()) + kAfterWords);
   app.add_option("BENCH", arguments.bench, "folder of the bench");
   app.add_option("--out", arguments.out, "folder for the results; made if absent")->required();
   app.add_option("--also", arguments.also, "effects to fit besides the gains and the rotor");
@@ -90,7 +100,7 @@ std::vector<std::string> names_to_fit(const Arguments& arguments, const bench::B
   std::vector<std::string> names = arguments.only ? std::vector<std::string>{} : calib::basic_parameters(bench);
   for (const std::string& name : calib::unknown_loads(bench)) names.push_back(name);
   for (const std::string& word : arguments.also) {
-    for (const std::string& name : calib::effect_parameters(word)) {
+    for (const std::string& name : effects::fit_word(word).parameters) {
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
   }
@@ -217,6 +227,10 @@ int calibrate(const Arguments& arguments) {
   apps::ProgressLine progress;
   const bench::Bench as_recorded = bench::read_bench(arguments.bench);
   parameters(arguments, as_recorded);  // refuses a wrong name before the work
+  for (const std::string& word : arguments.also) {
+    const std::string today = effects::fit_word(word).today;
+    if (!today.empty()) std::cerr << fmt::format("--also {}: the word is {} now\n", word, today);
+  }
   calib::FitResults results;
   const bench::Bench bench = examined(as_recorded, arguments, apps::shown(progress), results.data);
   std::vector<calib::FitParameter> unknowns = parameters(arguments, bench);
@@ -230,7 +244,7 @@ int calibrate(const Arguments& arguments) {
   results.noise_floor = noise_floor(fitted, scored);
   std::vector<bench::BenchRun> runs;
   for (const calib::SingleJoint& joint : fitted) runs.push_back(joint.run());
-  results.inverse = calib::inverse_dynamics(bench, runs);
+  results.inverse = evidence::inverse_dynamics(bench, runs);
   if (results.inverse && bench.law == bench::DriveLaw::kCascadePd && !arguments.only)
     results.inverse_taken = calib::take_inverse_dynamics(*results.inverse, bench, start, unknowns);
   const calib::FitProblem problem(unknowns, start, std::move(fitted));

@@ -146,6 +146,15 @@ struct Cost {
   calib::Simulated simulated = calib::simulated();
 };
 
+/// A command that runs as it is printed, where the bench says of which robot the joint is.
+std::string simulate_line(const bench::Bench& bench, const fs::path& out) {
+  const bool known = !bench.robot.empty();
+  return fmt::format("simulate with what was found{}: {} --robot {} --scenario stand --motor {} --out {}",
+                     known ? "" : " (ROBOT: one that has this joint)", apps::typed_word(apps::typed_beside("pmg_sil")),
+                     known ? apps::typed_word(bench.robot) : "ROBOT", apps::typed_word((out / "motor.yaml").string()),
+                     apps::typed_word((out / "stand").string()));
+}
+
 void print_summary(const diagnosis::Diagnosis& found, const bench::Bench& bench, const fs::path& out,
                    const Cost& cost) {
   const std::string unit = calib::position_unit(bench, true);
@@ -177,13 +186,13 @@ void print_summary(const diagnosis::Diagnosis& found, const bench::Bench& bench,
       unit, found.held_out_before.value / floor_rad, found.held_out_after.value / floor_rad);
   std::cout << fmt::format("noise floor {:.4g} {} ({}); {:.0f} % of the way to it\n", 1e3 * floor_rad, unit,
                            found.noise_floor.how, 100.0 * found.share_of_way_to_floor);
-  std::cout << fmt::format("simulation step {:.3g} ms ({}); integration error {:.3g} {} rms\n",
+  std::cout << fmt::format("simulation step {:.3g} ms ({}); integration error of the model before {:.3g} {} rms\n",
                            1e3 * found.step.error.step_s, name(found.step.limit), 1e3 * found.step.error.rms_rad, unit);
   std::cout << fmt::format("{:.1f} s, {:.1f} s of CPU time, at most {:.0f} MiB of memory, {} rollouts; results in {}\n",
                            cost.wall_s, cost.used.cpu_s, cost.used.peak_memory_MiB, cost.simulated.rollouts,
                            out.string());
   if (!found.causes.empty() || found.after.actuator.residual_torque.count > 0)
-    std::cout << fmt::format("simulate with what was found: pmg_sil --motor {}\n", (out / "motor.yaml").string());
+    std::cout << simulate_line(bench, out) << '\n';
 }
 
 int diagnose_robot(const Arguments& arguments) {
@@ -207,7 +216,7 @@ int diagnose_robot(const Arguments& arguments) {
 
 int diagnose(Arguments arguments) {
   if (arguments.inputs.size() != 1 || arguments.out.empty())
-    throw std::invalid_argument("expected one BENCH and --out DIR");
+    throw std::invalid_argument("expected one BENCH and --out DIR (pmg_diagnose --help shows an example)");
   arguments.bench = arguments.inputs.front();
   apps::ProgressLine progress;
   const bench::Bench bench = bench::read_bench(arguments.bench);

@@ -61,6 +61,14 @@ int write_report(const Arguments& arguments) {
     throw std::invalid_argument(
         fmt::format("{} logs; expected {} at most in one report", arguments.logs.size(), report::kMostRuns));
   }
+  for (const fs::path& log : arguments.logs) {
+    if (log.extension() == ".html")
+      throw std::invalid_argument(
+          fmt::format("{}: is no log; --out {} names the file for the page", log.string(), log.string()));
+  }
+  if (fs::is_directory(arguments.out))
+    throw std::invalid_argument(fmt::format("--out {}: is a folder; expected a file for the page, as {}",
+                                            arguments.out.string(), (arguments.out / "report.html").string()));
   const std::vector<report::RunSeries> runs = read(arguments.logs);
   report::run_report(runs).write(arguments.out);
   tell(arguments, runs);

@@ -16,6 +16,7 @@
 #include "operator/drive.hpp"
 #include "operator/hoist_wish.hpp"
 #include "operator/mode_wish.hpp"
+#include "operator/nobody_answers.hpp"
 #include "operator/robot_board.hpp"
 #include "operator/way_up.hpp"
 #include "operator/words.hpp"
@@ -72,7 +73,9 @@ class Session {
     }
     if (source_.heard().size() == 1) return source_.heard().begin()->first;
     if (source_.heard().empty()) {
-      report({{.robot = "", .mode = "unknown", .text = fmt::format("no controller is heard on {}", link_.url())}},
+      report({{.robot = "",
+               .mode = "unknown",
+               .text = fmt::format("no controller is heard on {}; {}", link_.url(), ops::kStartOne)}},
              false);
       return "";
     }
@@ -94,8 +97,9 @@ class Session {
     }
     std::vector<ops::Answer> answers = wish.answers();
     if (answers.empty()) {
-      answers.push_back(
-          {.robot = "", .mode = "unknown", .text = fmt::format("no controller is heard on {}", link_.url())});
+      answers.push_back({.robot = "",
+                         .mode = "unknown",
+                         .text = fmt::format("no controller is heard on {}; {}", link_.url(), ops::kStartOne)});
     }
     const bool reached = progress == ops::Progress::kReached;
     for (ops::Answer& answer : answers)

@@ -16,6 +16,7 @@
 #include "arms_operator/arms_text.hpp"
 #include "io/lcm_link.hpp"
 #include "json_output.hpp"
+#include "operator/nobody_answers.hpp"
 #include "operator/robot_board.hpp"
 #include "operator/robot_text.hpp"
 #include "option_checks.hpp"
@@ -107,8 +108,9 @@ class Watch {
   }
 
   std::string nobody() const {
-    return fmt::format("no controller{} is heard on {}",
-                       arguments_.robot.empty() ? "" : fmt::format(" named \"{}\"", arguments_.robot), link_.url());
+    return fmt::format("no controller{} is heard on {}; {}",
+                       arguments_.robot.empty() ? "" : fmt::format(" named \"{}\"", arguments_.robot), link_.url(),
+                       ops::kStartOne);
   }
 
   std::vector<std::string> screen(const ops::RobotNews& news) const {

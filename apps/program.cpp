@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -20,8 +23,9 @@ constexpr int kBadInput = 2;
 constexpr int kInterrupted = 130;
 constexpr unsigned kPatience_s = 1;  ///< work that takes longer after Ctrl-C is announced
 
-std::string program_name;    // NOLINT: signal handlers reach nothing else
-std::string finishing_line;  // NOLINT
+std::filesystem::path typed;  // NOLINT: this program, as it was called
+std::string program_name;     // NOLINT: signal handlers reach nothing else
+std::string finishing_line;   // NOLINT
 
 void end_at_once(int /*signal*/) { _exit(kInterrupted); }
 
@@ -75,9 +79,20 @@ void notice(std::initializer_list<int> signals, const char* finishing) {
   handle(SIGHUP, keep_in_mind);
 }
 
+std::string typed_beside(const std::string& name) { return (typed.parent_path() / name).string(); }
+
+std::string typed_word(const std::string& text) {
+  const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || std::strchr("_./-+=:,@%", c) != nullptr; };
+  if (!text.empty() && std::ranges::all_of(text, plain)) return text;
+  std::string quoted = "'";
+  for (const char letter : text) quoted += letter == '\'' ? "'\\''" : std::string(1, letter);
+  return quoted + "'";
+}
+
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body,
                 const std::function<std::string()>& bundle) {
   program_name = app.get_name();
+  if (argc > 0) typed = argv[0];
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) handle(signal, end_at_once);
   app.set_version_flag(
       "--version", [&] { return version(app, bundle); },
@@ -92,8 +107,10 @@ int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>
   try {
     return parse_and_run(app, argc, argv, body);
   } catch (const std::filesystem::filesystem_error& error) {
-    std::cerr << fmt::format("{}: {}: cannot be read or written ({})\n", program_name, error.path1().string(),
-                             error.code().message());
+    const bool file = error.code() == std::errc::not_a_directory || error.code() == std::errc::file_exists;
+    std::cerr << fmt::format("{}: {}: {}\n", program_name, error.path1().string(),
+                             file ? "a file has this name; expected a folder, or a new name"
+                                  : fmt::format("cannot be read or written ({})", error.code().message()));
   } catch (const std::exception& error) {
     std::cerr << program_name << ": " << io::plain_text(error.what()) << '\n';
   }

@@ -24,4 +24,11 @@ void notice(std::initializer_list<int> signals, const char* finishing = "writing
 int run_program(CLI::App& app, int argc, char** argv, const std::function<int()>& body,
                 const std::function<std::string()>& bundle = {});
 
+/// How to type another program of the same folder: "build/release/bin/NAME" where this one was typed so, NAME where the
+/// shell found it. Once run_program has begun.
+std::string typed_beside(const std::string& name);
+
+/// One word of a shell's command, quoted where it must be.
+std::string typed_word(const std::string& text);
+
 }  // namespace pmg::apps

@@ -84,6 +84,10 @@ std::string unknown_word(const CLI::App& app, const std::vector<const CLI::App*>
   }
   const auto option = std::ranges::find_if(words, is_option);
   if (option != words.end()) return unknown_option(chain, *option);
+  for (const CLI::App* given : chain) {
+    if (has_option(*given, "--" + words.front()))
+      return fmt::format("'{}' is one argument too many; did you mean --{}?", words.front(), words.front());
+  }
   return fmt::format("'{}' is one argument too many ({} --help shows an example)", words.front(), name_of(chain));
 }
 

@@ -17,8 +17,7 @@ int main(int argc, char** argv) try {
   const bench::Bench bench = bench::read_bench(argv[1]);
   std::vector<std::string> names =
       calib::basic_parameters(bench);  // gains and rotor, as far as bench.yaml doesn't know
-  for (const char* effect : {"damping", "friction"})
-    for (const std::string& name : calib::effect_parameters(effect)) names.push_back(name);
+  names.insert(names.end(), {"friction.viscous_Nm_s_per_rad", "friction.coulomb_Nm"});
   std::vector<calib::FitParameter> unknowns;
   for (const std::string& name : names) unknowns.push_back(calib::fit_parameter(name, bench));
 

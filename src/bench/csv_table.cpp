@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "files/bounded_file.hpp"
 
@@ -26,6 +27,11 @@ std::vector<std::string> cells(std::string line) {
 }
 
 void check_header(const CsvTable& table) {
+  for (const auto& [separator, name] : {std::pair{';', "semicolons"}, std::pair{'\t', "tabs"}}) {
+    if (table.header.size() == 1 && table.header.front().find(separator) != std::string::npos)
+      files::raise({table.file.string(), table.header_line}, "", fmt::format("columns are parted by {}", name),
+                   "commas, and decimals behind a point");
+  }
   for (std::size_t c = 0; c < table.header.size(); ++c) {
     const std::string& name = table.header[c];
     const files::Place place{table.file.string(), table.header_line};

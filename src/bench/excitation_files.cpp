@@ -52,7 +52,7 @@ double finite_number(const CsvTable& table, std::size_t row, const std::string& 
 
 void write_excitation(const fs::path& folder, const Excitation& excitation, const std::string& design) {
   if (fs::exists(folder / "runs.csv") || fs::exists(folder / "bench.yaml")) {
-    throw std::runtime_error(folder.string() + " holds a bench already; expected a new folder");
+    throw std::runtime_error(folder.string() + " holds an excitation or a bench already; expected a new folder");
   }
   fs::create_directories(folder / "commands");
   for (const ExcitationTrajectory& trajectory : excitation.trajectories) {

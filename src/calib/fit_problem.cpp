@@ -1,7 +1,6 @@
 #include "calib/fit_problem.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +10,6 @@
 
 #include "calib/joint_runs.hpp"
 #include "calib/rollout_residuals.hpp"
-#include "files/nearest_name.hpp"
 #include "work/parallel.hpp"
 
 namespace pmg::calib {
@@ -23,46 +21,6 @@ constexpr double kBend = 5.0;            // exponent of a range from 0: the firs
 constexpr double kDifference = 1e-3;     // finite difference of a coordinate
 constexpr const char* kInertia = "load.inertia_scale";
 constexpr const char* kGravity = "load.gravity_scale";
-
-struct Effect {
-  const char* word;
-  std::vector<std::string> parameters;
-};
-
-const std::vector<Effect>& effects() {
-  static const std::vector<Effect> kEffects = {
-      {"damping", {"friction.viscous_Nm_s_per_rad"}},
-      {"friction", {"friction.coulomb_Nm"}},
-      {"stribeck", {"friction.stribeck_Nm", "friction.stribeck_rad_s"}},
-      {"load_friction", {"friction.load_driving", "friction.load_backdriving"}},
-      {"asymmetry", {"friction.asymmetry"}},
-      {"presliding", {"friction.presliding_rad"}},
-      {"delay", {"command.delay_s"}},
-      {"rate_limit", {"command.rate_limit_rad_s"}},
-      {"hold", {"command.hold_s"}},
-      {"dead_band", {"drive.dead_band_rad"}},
-      {"gain", {"drive.kp_scale"}},
-      {"supply_sag", {"drive.supply_sag_per_Nm"}},
-      {"torque_speed", {"drive.stall_torque_Nm", "drive.no_load_rad_s"}},
-      {"brake", {"drive.brake_when_disabled"}},
-      {"zero_offset", {"sensor.zero_offset_rad"}},
-      {"sensor_lag", {"sensor.lag_s"}},
-      {"hysteresis", {"sensor.hysteresis_rad"}},
-      {"eccentricity", {"sensor.eccentricity_rad", "sensor.eccentricity_phase_rad"}},
-      {"quantisation", {"sensor.quantum_rad"}},
-      {"velocity_lag", {"sensor.velocity_lag_s"}},
-      {"backlash",
-       {"transmission.stiffness_Nm_per_rad", "transmission.damping_Nm_s_per_rad", "transmission.backlash_rad"}},
-      {"compliance", {"transmission.stiffness_Nm_per_rad", "transmission.damping_Nm_s_per_rad"}},
-      {"cogging", {"ripple.amplitude_Nm", "ripple.order", "ripple.phase_rad"}},
-      {"offset", {"ripple.offset_Nm"}},
-      {"thermal_drift", {"thermal.friction_per_K", "thermal.torque_per_K"}},
-      {"self_heating", {"thermal.friction_per_Nm2_s"}},
-      {"inertia", {kInertia}},
-      {"gravity", {kGravity}},
-  };
-  return kEffects;
-}
 
 double to_range(const FitParameter& p, double unit) {
   const double u = std::clamp(unit, 0.0, 1.0);
@@ -97,28 +55,6 @@ FitParameter fit_parameter(const std::string& name, const bench::Bench& bench) {
                                                        : 1.0;
   if (linear && name == "friction.presliding_rad") return {name, std::string(p.unit), 1e-6, 1e-3};
   return {name, std::string(p.unit), p.lower * scale, p.upper * scale};
-}
-
-std::vector<std::string> effect_words() {
-  std::vector<std::string> words;
-  for (const Effect& effect : effects()) words.emplace_back(effect.word);
-  return words;
-}
-
-std::vector<std::string> effect_parameters(const std::string& word) {
-  for (const Effect& effect : effects()) {
-    if (word == effect.word) return effect.parameters;
-  }
-  std::vector<std::string> known = effect_words();
-  for (const model::ActuatorParameter& p : model::actuator_parameters()) {
-    if (word == p.name) return {word};
-    known.emplace_back(p.name);
-  }
-  if (const std::string nearest = files::nearest_name(word, known); !nearest.empty()) {
-    throw std::invalid_argument(fmt::format("'{}' isn't an effect; did you mean {}?", word, nearest));
-  }
-  throw std::invalid_argument(fmt::format("'{}' isn't an effect; expected one of {}, or a parameter of motor.yaml",
-                                          word, fmt::join(effect_words(), ", ")));
 }
 
 std::vector<std::string> basic_parameters(const bench::Bench& bench) {
@@ -220,6 +156,8 @@ double FitProblem::loss(std::span<const double> point, unsigned threads) const {
     return kSenseless_rad2;
   }
 }
+
+void FitProblem::expect_simulated(std::span<const double> point) const { runs_.front().rollout(model_at(point)); }
 
 fitting::Problem FitProblem::least_squares(unsigned threads) const {
   fitting::Problem problem;

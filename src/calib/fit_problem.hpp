@@ -23,11 +23,6 @@ struct FitParameter {
 /// std::invalid_argument that lists the names.
 FitParameter fit_parameter(const std::string& name, const bench::Bench& bench);
 
-/// (word of the command line: damping, friction, delay, rate_limit, ..., or a parameter's own name) => (parameter
-/// names). Throws std::invalid_argument that lists the words.
-std::vector<std::string> effect_parameters(const std::string& word);
-std::vector<std::string> effect_words();
-
 /// The paper's parameters (III-C.1: Kp, Kd, I) for this bench's drive law, and those that bench.yaml calls unknown.
 std::vector<std::string> basic_parameters(const bench::Bench& bench);
 
@@ -59,6 +54,9 @@ class FitProblem {
   /// L(eta) of the paper over the number of samples: mean square of simulated minus measured reading over all runs
   /// [rad^2]; 1e6 if the model is invalid. Does not depend on the number of threads.
   double loss(std::span<const double> point, unsigned threads = 1) const;
+
+  /// Throws std::invalid_argument that says why the model at the point can't be simulated, if it can't.
+  void expect_simulated(std::span<const double> point) const;
 
   /// The same problem for Gauss-Newton steps; coordinates are points of the cube. Refers to this object.
   fitting::Problem least_squares(unsigned threads) const;

@@ -110,7 +110,7 @@ void show_inverse(pages::Page& page, const InverseDynamics& found, bool taken) {
       "Least squares of the recorded drive, without simulation, over {} windows: residual {:.3g} Nm (N "
       "on a linear axis). Where it disagrees with the fit, friction isn't Coulomb and viscous alone, or the drive's "
       "timing isn't as modelled.",
-      found.samples, found.residual_Nm));
+      found.windows, found.residual_Nm));
   page.paragraph(fmt::format("Dry friction {:.4g} Nm forwards, {:.4g} Nm backwards (N on a linear axis).",
                              std::max(0.0, found.coulomb_forward_Nm()), std::max(0.0, found.coulomb_backward_Nm())));
   if (const std::string meaning = meaning_of_negative(found); !meaning.empty()) page.paragraph(meaning);

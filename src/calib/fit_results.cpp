@@ -49,7 +49,7 @@ Json inverse_json(const InverseDynamics& found) {
           {"possible", possible(found)},
           {"residual_Nm", found.residual_Nm},
           {"unresolved", found.unresolved},
-          {"windows", found.samples}};
+          {"windows", found.windows}};
 }
 
 Json noise_json(const bench::NoiseFloor& floor) {

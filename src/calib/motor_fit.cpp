@@ -206,7 +206,9 @@ class MotorFitRun {
 }  // namespace
 
 Fit fit(const FitProblem& problem, const FitOptions& options, const work::Progress& progress) {
-  return MotorFitRun(problem, options, progress).run();
+  Fit found = MotorFitRun(problem, options, progress).run();
+  if (!found.point.empty()) problem.expect_simulated(found.point);
+  return found;
 }
 
 }  // namespace pmg::calib

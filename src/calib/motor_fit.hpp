@@ -34,7 +34,7 @@ struct Fit {
 };
 
 /// (problem, options) => (fit). The same problem, options and seed give the same result with any number of threads.
-/// After an interruption: the best so far.
+/// After an interruption: the best so far. Throws std::invalid_argument where no model that was tried can be simulated.
 Fit fit(const FitProblem& problem, const FitOptions& options, const work::Progress& progress = {});
 
 }  // namespace pmg::calib

@@ -13,7 +13,7 @@ namespace pmg::calib {
 const char* name(StepLimit limit) {
   switch (limit) {
     case StepLimit::kError:
-      return "its error is small beside the residual of a model without causes, or beside noise";
+      return "its error is small beside what a model without causes misses, or beside noise";
     case StepLimit::kResidual:
       return "a finer step leaves no lower residual";
     case StepLimit::kCost:

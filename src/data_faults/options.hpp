@@ -8,8 +8,8 @@
 
 namespace pmg::data_faults {
 
-inline constexpr std::string_view kPlants = "hidden plants, seeds 100 to 179";
-inline constexpr std::string_view kLiterature = "hidden plants of the literature, even seeds 0 to 638";
+inline constexpr std::string_view kPlants = "an earlier family of hidden plants, seeds 100 to 179";
+inline constexpr std::string_view kLiterature = "hidden plants, even seeds 0 to 638";
 inline constexpr std::string_view kAssumed =
     "assumed; measured benches with a known fault in their data would settle it";
 

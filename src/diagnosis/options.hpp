@@ -17,7 +17,7 @@
 namespace pmg::diagnosis {
 
 // docs/explanation/hidden-plants.md
-inline constexpr std::string_view kPlants = "hidden plants, seeds 0 to 83";
+inline constexpr std::string_view kPlants = "an earlier family of hidden plants, seeds 0 to 83";
 inline constexpr std::string_view kAssumed = "assumed; measured joints whose effects are known would settle it";
 inline constexpr std::string_view kCost = "time of a diagnosis";
 
@@ -42,7 +42,7 @@ struct JointDiagnosisOptions {
                                      "from this share of the residual beyond a correct model's, amplitude_of_beginning "
                                      "doesn't count: what mends another effect's form leaves a rest itself; only where "
                                      "the residual without the effect is above remains_of_noise",
-                                     "doubles of the second family"};
+                                     "hidden plants with two effects"};
   work::Threshold worse_deviations{2.0, "",
                                    "an effect is not taken if runs of a gain, a load or a trajectory left out are "
                                    "predicted worse with it, by so many standard deviations",

@@ -63,11 +63,12 @@ void show_gain(pages::Page& page, const bench::Bench& bench, const Diagnosis& di
     page.paragraph(fmt::format("Noise floor: mean absolute {} {}, rms {}; {}.",
                                thousandths(diagnosis.noise_floor.mean_absolute_rad), calib::position_unit(bench, true),
                                thousandths(diagnosis.noise_floor.rms_rad), diagnosis.noise_floor.how));
-    page.paragraph(
-        fmt::format("The simulation's step is {:.3g} ms ({}); its integrator's error is {} {} rms with the "
-                    "base model.",
-                    1e3 * diagnosis.step.error.step_s, name(diagnosis.step.limit),
-                    thousandths(diagnosis.step.error.rms_rad), calib::position_unit(bench, true)));
+    page.paragraph(fmt::format(
+        "The simulation's step is {:.3g} ms ({}). With the model before, which misses the readings by {} {} "
+        "on average, the integrator's error is {} {} rms; with the causes it was not measured.",
+        1e3 * diagnosis.step.error.step_s, name(diagnosis.step.limit), thousandths(diagnosis.held_out_before.value),
+        calib::position_unit(bench, true), thousandths(diagnosis.step.error.rms_rad),
+        calib::position_unit(bench, true)));
   }
   diagnosis::JointDiagnosisOptions joint = diagnosis.options;
   data_faults::DataFaultOptions data = diagnosis.data.options;

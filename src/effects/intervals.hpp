@@ -11,7 +11,7 @@
 namespace pmg::effects {
 
 // docs/explanation/hidden-plants.md
-inline constexpr std::string_view kPlants = "hidden plants, seeds 0 to 83";
+inline constexpr std::string_view kPlants = "an earlier family of hidden plants, seeds 0 to 83";
 inline constexpr std::string_view kAssumed = "assumed; how often intervals hold a known truth would settle it";
 inline constexpr std::string_view kCost = "time of a diagnosis";
 

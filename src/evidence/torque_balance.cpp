@@ -57,18 +57,35 @@ TorqueBalance::TorqueBalance(const bench::Bench& bench, const std::vector<bench:
   sample_s_ = 1.0 / bench.sample_rate_hz;
   const std::size_t count = std::max(static_cast<std::size_t>(options_.fewest_points),
                                      static_cast<std::size_t>(std::lround(options_.window_s / sample_s_)));
-  const double half_s = 0.5 * static_cast<double>(count) * sample_s_;
-  const double norm = 16.0 / 35.0 * 2.0 * half_s;  // integral of (1 - x^2)^3
-  for (std::size_t k = 0; k < count; ++k) {
-    const double x = (static_cast<double>(k) + 0.5) * sample_s_ / half_s - 1.0, y = 1.0 - x * x;
-    const double scale = sample_s_ / norm;
-    weight_.push_back(scale * y * y * y);
-    weight_1_.push_back(scale * -6.0 * x * y * y / half_s);
-    weight_2_.push_back(scale * (-6.0 * y * y + 24.0 * x * x * y) / (half_s * half_s));
-  }
+  sample_weights(count);
   for (const bench::BenchRun& run : runs) read(run);
   shape({});
   for (std::size_t i = 0; i < runs_.size(); ++i) find_windows(i);
+}
+
+/// Sums over samples miss the integrals by a share of 1 / count^2, and a constant speed would pass for an acceleration:
+/// at 20 points a window viscous friction was wrong by 0.4/s times the inertia. So the sampled weights get the moments
+/// that the integrals have: sum w = 1, sum w' t = -1, sum w'' = 0, sum w'' t^2 = 2. The others are 0 by symmetry.
+void TorqueBalance::sample_weights(std::size_t count) {
+  const double half_s = 0.5 * static_cast<double>(count) * sample_s_;
+  double sum = 0.0, of_speed = 0.0, mean_2 = 0.0, of_acceleration = 0.0;
+  std::vector<double> times_s;
+  for (std::size_t k = 0; k < count; ++k) {
+    times_s.push_back((static_cast<double>(k) + 0.5) * sample_s_ - half_s);
+    const double x = times_s.back() / half_s, y = 1.0 - x * x;
+    weight_.push_back(y * y * y);
+    weight_1_.push_back(-6.0 * x * y * y / half_s);
+    weight_2_.push_back((-6.0 * y * y + 24.0 * x * x * y) / (half_s * half_s));
+    sum += weight_.back();
+    of_speed += weight_1_.back() * times_s.back();
+    mean_2 += weight_2_.back() / static_cast<double>(count);
+  }
+  for (std::size_t k = 0; k < count; ++k) of_acceleration += (weight_2_[k] - mean_2) * times_s[k] * times_s[k];
+  for (std::size_t k = 0; k < count; ++k) {
+    weight_[k] /= sum;
+    weight_1_[k] /= -of_speed;
+    weight_2_[k] = 2.0 * (weight_2_[k] - mean_2) / of_acceleration;
+  }
 }
 
 void TorqueBalance::read(const bench::BenchRun& run) {
@@ -82,14 +99,19 @@ void TorqueBalance::read(const bench::BenchRun& run) {
   const bool convertible = std::all_of(r.tau_ff_Nm.begin(), r.tau_ff_Nm.end(), [&](double tau_Nm) {
     return std::isfinite(bench_->feed_forward_output(tau_Nm, 1.0));
   });
+  const std::vector<double>& output = r.torque_Nm.empty() ? r.drive_V : r.torque_Nm;
+  const double per_unit_Nm = r.torque_Nm.empty() ? bench_->known.drive.torque_per_unit_Nm : 1.0;
+  const bool held = bench_->law == bench::DriveLaw::kTorque;  // a command; other torques are measured
   for (std::size_t k = 0; k < points.size(); ++k) {
     BalancePoint& p = points[k];
     p.q_rad = 0.5 * (r.q_rad[k] + r.q_rad[k + 1]);
     p.dq_rad_s = 0.5 * (m.dq_rad_s[k] + m.dq_rad_s[k + 1]);
     p.direction = std::clamp(p.dq_rad_s / std::max(still, 1e-12), -1.0, 1.0);
-    p.gravity_Nm = run.load.gravity_Nm * std::sin(p.q_rad);
-    p.hanging_Nm = run.load.gravity_Nm * std::cos(p.q_rad);
+    p.gravity_Nm = run.load.gravity_Nm * std::sin(p.q_rad - run.load.hangs_at_rad);
+    p.hanging_Nm = run.load.gravity_Nm * std::cos(p.q_rad - run.load.hangs_at_rad);
     p.load_Nm = p.gravity_Nm + run.load.inertia_kg_m2 * 0.5 * (m.ddq_rad_s2[k] + m.ddq_rad_s2[k + 1]);
+    p.recorded_Nm =
+        output.empty() ? std::nan("") : per_unit_Nm * (held ? output[k] : 0.5 * (output[k] + output[k + 1]));
     p.temp_C = r.temp_C.empty() ? run.temp_C.value_or(std::nan("")) : r.temp_C[k];
     const bool on = r.enabled.empty() || (r.enabled[k] && r.enabled[k + 1]);
     const bool off = !r.enabled.empty() && !r.enabled[k] && !r.enabled[k + 1];
@@ -162,8 +184,7 @@ Column TorqueBalance::acceleration_rad_s2() const {
   for (std::size_t i = 0; i < windows_.size(); ++i) {
     const BalancePoint* points = &runs_[windows_[i].run][windows_[i].first];
     double sum = 0.0;
-    // The sampled second derivative of the weight does not sum to exactly 0: take off a constant first.
-    for (std::size_t k = 0; k < weight_.size(); ++k) sum += weight_2_[k] * (points[k].q_rad - points[0].q_rad);
+    for (std::size_t k = 0; k < weight_.size(); ++k) sum += weight_2_[k] * points[k].q_rad;
     column[static_cast<Eigen::Index>(i)] = sum;
   }
   return column;

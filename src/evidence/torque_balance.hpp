@@ -20,9 +20,10 @@ struct CommandShape {
 struct BalancePoint {
   double q_rad = 0.0, dq_rad_s = 0.0;
   double direction = 0.0;                     ///< of motion: clamp(dq / still speed, -1, 1)
-  double gravity_Nm = 0.0, load_Nm = 0.0;     ///< torque of the bench's load: G sin q, and G sin q + I ddq
-  double hanging_Nm = 0.0;                    ///< G cos q
+  double gravity_Nm = 0.0, load_Nm = 0.0;     ///< torque of the load: G sin(q - hangs_at), and that + I ddq
+  double hanging_Nm = 0.0;                    ///< G cos(q - hangs_at)
   double drive = 0.0;                         ///< output of the drive's law [unit of output times supply]
+  double recorded_Nm = 0.0;                   ///< recorded torque, or recorded voltage times its constant; NaN without
   double error_rad = 0.0, error_drive = 0.0;  ///< command minus reading, and kp * error * supply
   double temp_C = 0.0;
   double since_turn_s = 0.0;  ///< since the drive's torque last changed its sign
@@ -75,6 +76,7 @@ class TorqueBalance {
   struct Window {
     std::size_t run, first;
   };
+  void sample_weights(std::size_t count);
   void read(const bench::BenchRun& run);
   void find_windows(std::size_t run);
 

@@ -43,9 +43,11 @@ constexpr std::array<Wording, kFaultCodes> kWordings = {{
     {"joint_torque", "Nm", "{joint} gives {value:.1f} Nm, limit {limit:.1f} Nm", nullptr,
      "Look at what the joint pushed against."},
     {"tilt", "rad", "the IMU's link leans {value:.2f} rad from upright, limit {limit:.2f} rad", nullptr,
-     "The robot fell or was tipped: put it upright before the reset."},
+     "The robot fell or was tipped: put it upright before the reset, a simulated one by pmg_send lift."},
     {"torso_attitude", "rad", "the torso leans {value:.2f} rad away from what was commanded, limit {limit:.2f} rad",
-     nullptr, "The robot lost its balance or was held: put it upright before it stands again."},
+     nullptr,
+     "The robot lost its balance or was held: put it upright before it stands again, a simulated one by pmg_send "
+     "lift."},
     {"reference_not_finite", "", "the motion generator or the ground-aware optimisation gave what is no number",
      nullptr, "A defect of the clip library or the controller: keep the log and report it."},
     {"policy_not_finite", "", "the policy failed, or gave a target that is no number", nullptr,

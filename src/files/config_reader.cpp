@@ -164,6 +164,8 @@ void ConfigReader::finish() const {
     if (entry.asked) continue;
     const std::string nearest = nearest_name(key, known_);
     if (!nearest.empty()) raise(entry.key_place, path(key), fmt::format("is unknown; did you mean {}?", nearest), "");
+    if (key.find_first_not_of("0123456789") == std::string::npos)  // vx_m_s: 0,3
+      raise(entry.key_place, path(key), "is no key but a number", "decimals behind a point; a comma parts two entries");
     raise(entry.key_place, path(key), "is unknown",
           known_.empty() ? "no such key" : fmt::format("nothing besides {}", fmt::join(known_, ", ")));
   }

@@ -16,6 +16,19 @@ char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned 
 
 bool same(char a, char b) { return lower(a) == lower(b); }
 
+/// ("Knee_left") => {"knee", "left"}
+std::vector<std::string> parts(std::string_view name) {
+  std::vector<std::string> found(1);
+  for (const char letter : name) {
+    if (letter == '_' || letter == '-')
+      found.emplace_back();
+    else
+      found.back() += lower(letter);
+  }
+  std::ranges::sort(found);
+  return found;
+}
+
 }  // namespace
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -47,6 +60,8 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
     }
   }
   if (!nearest.empty()) return nearest;
+  const auto turned = std::ranges::find(names, parts(name), parts);
+  if (turned != names.end()) return *turned;
   const auto begins = [&](const std::string& known) {
     return known.size() > name.size() && std::equal(name.begin(), name.end(), known.begin(), same);
   };

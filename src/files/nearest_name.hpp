@@ -14,7 +14,7 @@ namespace pmg::files {
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
 /// The nearest of these names; empty if none is near. A name is near at up to one edit per three letters, but at least
-/// one, or if it alone begins with the given word.
+/// one, or if it has the same parts in another order (knee_left), or if it alone begins with the given word.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& names);
 
 /// The nearest file of the same folder and ending; empty if none is near.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "operator/nobody_answers.hpp"
+
 namespace pmg::ops {
 
 using State = pmg_msgs::hoist_state_t;
@@ -56,7 +58,7 @@ Progress HoistWish::step() {
 Progress HoistWish::judge() {
   const HeardRobot* heard = source_.heard(robot_);
   if (heard == nullptr || !heard->status) {
-    text_ = fmt::format("no controller of this name answers on {}", source_.url());
+    text_ = nobody_answers(source_);
     return Progress::kPending;
   }
   const std::int64_t silent_ns = source_.clock().now_ns() - std::max(heard->hoist.heard_ns, begin_ns_);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "operator/nobody_answers.hpp"
 #include "operator/words.hpp"
 
 namespace pmg::ops {
@@ -134,7 +135,7 @@ Answer ModeWish::judge(const std::string& robot) const {
   }
   const HeardRobot* heard = source_.heard(robot);
   if (heard == nullptr) {
-    answer.text = fmt::format("no controller of this name answers on {}", source_.url());
+    answer.text = nobody_answers(source_);
     return answer;
   }
   answer.mode = mode_name(*heard->mode());

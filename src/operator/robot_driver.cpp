@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "operator/keyboard_text.hpp"
+#include "operator/nobody_answers.hpp"
 #include "operator/way_up.hpp"
 #include "operator/words.hpp"
 
@@ -326,7 +327,7 @@ bool RobotDriver::silent() const {
 
 std::string RobotDriver::silence_words() const {
   if (mode_) return "the controller is no longer heard";
-  return fmt::format("no controller of this name answers on {}", source_.url());
+  return nobody_answers(source_);
 }
 
 bool RobotDriver::moves() const noexcept { return asked_[kVx] != 0.0 || asked_[kVy] != 0.0 || asked_[kOmega] != 0.0; }

@@ -161,6 +161,8 @@ void Page::chart(const Chart& chart) {
                        {"width", line->width_px},
                        {"dashed", line->dashed},
                        {"stepped", line->stepped}});
+      if (std::isfinite(line->widens_from) && std::isfinite(line->widens_to))
+        lines.back()["widens"] = {line->widens_from, line->widens_to};
     }
   }
   ordered_json bands = ordered_json::array();

@@ -110,6 +110,16 @@
       ctx.fillRect(at(from), box.top, Math.max(px, at(to) - at(from)), box.height);
     }
   });
+  // Lines below stay off the words.
+  const halo = (ctx, words, x, y, px) => {
+    ctx.save();
+    ctx.strokeStyle = 'rgba(255, 255, 255, 0.85)';
+    ctx.lineWidth = 4 * px;
+    ctx.lineJoin = 'round';
+    ctx.strokeText(words, x, y);
+    ctx.restore();
+    ctx.fillText(words, x, y);
+  };
   const drawMarks = (spec) => (u) => clipped(u, (ctx, box, at, px) => {
     ctx.textBaseline = 'alphabetic';
     ctx.strokeStyle = ctx.fillStyle = '#b00020';
@@ -127,22 +137,19 @@
       rows[row] = begin + width;
       const y = spec.lanes ? box.top + box.height - (8 + 13 * row) * px : box.top + (12 + 13 * row) * px;
       ctx.textAlign = 'left';
-      // Lines below stay off the words.
-      ctx.save();
-      ctx.strokeStyle = 'rgba(255, 255, 255, 0.85)';
-      ctx.lineWidth = 4 * px;
-      ctx.lineJoin = 'round';
-      ctx.strokeText(words, begin, y);
-      ctx.restore();
-      ctx.fillText(words, begin, y);
+      halo(ctx, words, begin, y, px);
     }
   });
+  // As much as there is room for; a number alone rather than it and a letter or two.
   const fitted = (ctx, words, width) => {
-    if (ctx.measureText(words).width <= width) return words;
-    for (let n = words.length - 1; n > 0; --n) {
+    const fits = (text) => ctx.measureText(text).width <= width;
+    if (fits(words)) return words;
+    const number = (/^\d+(?= )/.exec(words) ?? [''])[0];
+    for (let n = words.length - 1; n > (number ? number.length + 3 : 0); --n) {
       const shorter = words.slice(0, n).trimEnd() + '…';
-      if (ctx.measureText(shorter).width <= width) return shorter;
+      if (fits(shorter)) return shorter;
     }
+    if (fits(number)) return number;
     return '';
   };
   const drawLanes = (spec) => (u) => clipped(u, (ctx, box, at, px) => {
@@ -173,6 +180,46 @@
     const y = u.data[index], own = [...y.keys()].filter((i) => y[i] !== undefined);
     return own.filter((i, k) => y[i] != null && y[own[k - 1]] == null && y[own[k + 1]] == null);
   };
+  // Of the lines that are shown, in the stretch of x that is shown. A line's `widens` bounds what it adds.
+  const rangeOf = (u, spec) => {
+    const [first, last] = u.series[0].idxs ?? [0, u.data[0].length - 1];
+    let range = [null, null];
+    spec.lines.forEach((line, i) => {
+      if (u.series[i + 1].show === false) return;
+      const [from, to] = (line.widens ?? [-Infinity, Infinity]).map((value) => value / spec.unit);
+      for (let k = first; k <= last; ++k) {
+        const y = u.data[i + 1][k];
+        if (y == null) continue;
+        const counted = Math.min(Math.max(y, from), to);
+        range = [Math.min(range[0] ?? counted, counted), Math.max(range[1] ?? counted, counted)];
+      }
+    });
+    return range;
+  };
+  // At the edge that a line leaves, how far it goes.
+  const drawBeyond = (spec) => (u) => clipped(u, (ctx, box, at, px) => {
+    const {min, max} = u.scales.y, [first, last] = u.series[0].idxs ?? [0, -1], rows = {top: 0, bottom: 0};
+    spec.lines.forEach((line, i) => {
+      if (!line.widens || !u.series[i + 1].show) return;
+      let low = null, high = null;
+      for (let k = first; k <= last; ++k) {
+        const y = u.data[i + 1][k];
+        if (y == null) continue;
+        if (y > max && (high === null || y > u.data[i + 1][high])) high = k;
+        if (y < min && (low === null || y < u.data[i + 1][low])) low = k;
+      }
+      for (const [k, edge, arrow] of [[high, 'top', '↑'], [low, 'bottom', '↓']]) {
+        if (k === null) continue;
+        const words = `${line.name} ${text(u.data[i + 1][k] * spec.unit)} ${arrow}`, width = ctx.measureText(words).width;
+        const row = rows[edge]++;
+        ctx.fillStyle = line.colour;
+        ctx.textAlign = 'left';
+        ctx.textBaseline = 'alphabetic';
+        const begin = Math.max(box.left, Math.min(at(u.data[0][k]) + 4 * px, box.left + box.width - width - 2 * px));
+        halo(ctx, words, begin, edge === 'top' ? box.top + (12 + 13 * row) * px : box.top + box.height - (5 + 13 * row) * px, px);
+      }
+    });
+  });
   const countOf = (values) => values.reduce((count, value) => count + (value != null), 0);
 
   const options = (spec, width) => {
@@ -205,7 +252,7 @@
       legend: {show: !lanes, markers: {width: 0, fill: (u, i) => u.series[i].stroke()}},
       scales: {
         x: {time: false, range: (u, min, max) => (min < max ? [min, max] : [axis.shown.min, axis.shown.max])},
-        y: {range: lanes ? () => [0, lanes.length] : (u, min, max) => shownRange(min, max, MARGIN)},
+        y: {range: lanes ? () => [0, lanes.length] : (u) => shownRange(...rangeOf(u, spec), MARGIN)},
       },
       series: [
         {label: spec.x_name, value: (_, v) => text(v) + ' ' + spec.x_unit},
@@ -237,7 +284,7 @@
       },
       hooks: {
         drawClear: [drawBands(spec)],
-        draw: [lanes ? drawLanes(spec) : () => {}, drawMarks(spec)],
+        draw: [lanes ? drawLanes(spec) : drawBeyond(spec), drawMarks(spec)],
         setScale: [(u, key) => { if (key === 'x') zoom(axis, u.scales.x.min, u.scales.x.max, u); }],
       },
     };

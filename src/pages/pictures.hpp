@@ -29,6 +29,8 @@ struct Line {
   double width_px = 1.3;
   bool dashed = false;
   bool stepped = false;  ///< holds its value until the next point
+  /// Values beyond don't widen the axis of y: where they leave the picture, words at its edge say how far they go.
+  double widens_from = -std::numeric_limits<double>::infinity(), widens_to = std::numeric_limits<double>::infinity();
 };
 
 /// A shaded stretch of x behind the lines.

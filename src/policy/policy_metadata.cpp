@@ -121,7 +121,8 @@ PolicyMetadata checked(const nlohmann::json& json, const model::RobotModel& robo
   expect_equal("its rate in Hz", json.at("policy_rate_Hz").get<double>(), control_rate_Hz);
   if (const auto trained_on = json.at("clip_library_sha256").get<std::string>(); trained_on != clip_library_sha256) {
     refuse_metadata(
-        fmt::format("it was trained on other clips: the SHA-256 of its clip library is {}; this controller has {}",
+        fmt::format("it was trained on other clips; leave --clips out or give those that it was trained on, or choose "
+                    "another policy. The SHA-256 of its clip library is {}; this controller has {}",
                     trained_on, clip_library_sha256));
   }
   metadata.action_scale = json.at("action_scale").get<double>();

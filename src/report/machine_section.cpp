@@ -14,6 +14,9 @@ namespace pmg::report {
 
 namespace {
 
+/// Of what limited a target, in every picture of this section.
+constexpr const char *kByRange = pages::colour::kSky, *kBySpeed = pages::colour::kOrange,
+                     *kByTorque = pages::colour::kVermillion;
 constexpr std::size_t kHottest = 4;  // joints whose temperatures are drawn
 
 /// Ticks with a limit of any kind; a tick with two kinds counts twice.
@@ -67,7 +70,7 @@ void limited_joints(pages::Page& page, const Runs& runs) {
       const LimitedJoint& one = runs[i].limited[k];
       pages::Lanes::Lane lane{.name = runs[i].joint_names[one.joint] + suffix(runs, i), .stretches = {}};
       for (const LimitedJoint::Stretch& s : one.stretches) {
-        const char* colour = s.by[2] ? "#d55e00" : s.by[1] ? "#e69f00" : "#56b4e9";
+        const char* colour = s.by[2] ? kByTorque : s.by[1] ? kBySpeed : kByRange;
         lane.stretches.push_back({s.from_s, s.to_s, "", colour});
       }
       lanes.lanes.push_back(std::move(lane));
@@ -109,20 +112,13 @@ void limit_chart(pages::Page& page, const Runs& runs) {
   chart_of_runs(
       page, runs, "How many joints' targets were limited, and by what", [&](std::size_t i) -> std::vector<RunLine> {
         const auto& status = runs[i].status;
-        const Palette& colours = palette(i);
         if (limited_ticks(runs[i]) == 0) return {};
-        return {
-            {.name = "range",
-             .x = status.t_s,
-             .y = status.limited_position,
-             .colour = colours.measured,
-             .stepped = true},
-            {.name = "speed", .x = status.t_s, .y = status.limited_rate, .colour = colours.admissible, .stepped = true},
-            {.name = "torque",
-             .x = status.t_s,
-             .y = status.limited_torque,
-             .colour = colours.optimised,
-             .stepped = true}};
+        const auto line = [&](const char* name, const std::vector<double>& counts, const char* colour) {
+          return RunLine{
+              .name = name, .x = status.t_s, .y = counts, .colour = colour, .dashed = i > 0, .stepped = true};
+        };
+        return {line("range", status.limited_position, kByRange), line("speed", status.limited_rate, kBySpeed),
+                line("torque", status.limited_torque, kByTorque)};
       });
 }
 
@@ -157,7 +153,8 @@ void delays(pages::Page& page, const Runs& runs) {
   }
   if (count == 0) return;
   const bool all = count == static_cast<std::int64_t>(table.rows.size());
-  page.folded(fmt::format("{} cycles woke more than 2 ms late{}", count, all ? "" : ", the first of them"),
+  page.folded(fmt::format("{} cycle{} woke more than 2 ms late{}", count, count == 1 ? "" : "s",
+                          all ? "" : ", the first of them"),
               [&] { page.table(table); });
 }
 

@@ -2,7 +2,10 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <optional>
+#include <utility>
 
+#include "operator/keyboard_text.hpp"
 #include "report/run_figures.hpp"
 #include "report/sections.hpp"
 
@@ -14,6 +17,9 @@ constexpr std::array<const char*, 2> kFeet = {"left", "right"};
 constexpr std::array<const char*, kChannels> kTitles = {
     "Forward velocity vx [m/s]",    "Sideways velocity vy [m/s]",       "Yaw rate omega [rad/s]",
     "Torso pitch [rad], + forward", "Torso roll [rad], + to the right", "Height [m], deviation from standing"};
+
+/// Of the range that the robot takes: a mistyped command that is far beyond it must not flatten what the robot did.
+constexpr double kAskedShown = 1.5;
 
 std::vector<pages::Lanes::Stretch> stretches(const Intervals& intervals, const char* colour) {
   std::vector<pages::Lanes::Stretch> found;
@@ -31,17 +37,21 @@ void commands(pages::Page& page, const Runs& runs) {
       "reference realises it. optimised: the motion on the ground that this reference gives. measured: the simulated "
       "robot's "
       "motion on its own feet, velocities averaged over one gait period.");
+  std::vector<std::optional<CommandLimits>> limits;
+  for (const RunSeries& run : runs) limits.push_back(ops::command_limits(run.info));
   page.columns([&] {
     for (std::size_t channel = 0; channel < kChannels; ++channel) {
       chart_of_runs(page, runs, kTitles[channel], [&](std::size_t i) -> std::vector<RunLine> {
         const auto& reference = runs[i].reference;
         const auto& truth = runs[i].truth;
         const Palette& colours = palette(i);
-        return {{.name = "asked",
-                 .x = reference.t_s,
-                 .y = reference.user[channel],
-                 .colour = colours.asked,
-                 .dashed = true},
+        RunLine asked{
+            .name = "asked", .x = reference.t_s, .y = reference.user[channel], .colour = colours.asked, .dashed = true};
+        if (limits[i]) {
+          asked.widens_from = kAskedShown * limits[i]->lower[channel];
+          asked.widens_to = kAskedShown * limits[i]->upper[channel];
+        }
+        return {std::move(asked),
                 {.name = "admissible",
                  .x = reference.t_s,
                  .y = followed(runs[i], reference.t_s, reference.command[channel]),

@@ -80,6 +80,33 @@ void steps_table(pages::Page& page, const Runs& runs) {
   }
 }
 
+/// The lane has room for the numbers of short steps only.
+void name_steps(pages::Page& page, const Runs& runs) {
+  std::vector<std::string> told;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    std::string names;
+    for (const RunSeries::Step& step : runs[i].steps)
+      names += fmt::format("{}{}\u00a0{}", names.empty() ? "" : ", ", step.number, step.text);
+    if (names.empty() || std::ranges::find(told, names) != told.end()) continue;
+    page.paragraph(fmt::format("Steps{}: {}.", suffix(runs, i), names));
+    told.push_back(std::move(names));
+  }
+}
+
+struct NamedEvent {
+  RunSeries::Event event;
+  std::string behind;  ///< of its run
+};
+
+void events_table(pages::Page& page, std::vector<NamedEvent> events) {
+  if (events.empty()) return;
+  std::ranges::stable_sort(events, {}, [](const NamedEvent& one) { return one.event.t_s; });
+  pages::Table table{.header = {"time [s]", "what"}, .rows = {}};
+  for (const NamedEvent& one : events)
+    table.rows.push_back({fmt::format("{:.2f}{}", one.event.t_s, one.behind), one.event.text});
+  page.table(table);
+}
+
 /// The part before the colon, because a mark has little room.
 std::string short_fault(const std::string& text) { return text.substr(0, text.find(':')); }
 
@@ -141,7 +168,9 @@ void chart_of_runs(pages::Page& page, const Runs& runs, const std::string& title
                            .colour = line.colour,
                            .width_px = line.width_px,
                            .dashed = line.dashed,
-                           .stepped = line.stepped});
+                           .stepped = line.stepped,
+                           .widens_from = line.widens_from,
+                           .widens_to = line.widens_to});
   }
   page.chart(chart);
 }
@@ -163,7 +192,7 @@ void timeline(pages::Page& page, const Runs& runs) {
                   "Modes, scenario steps, who drives, and what the gantry carries; drag to zoom all charts, double "
                   "click to go back",
               .lanes = {}};
-  pages::Table events{.header = {"time [s]", "what"}, .rows = {}};
+  std::vector<NamedEvent> events;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const RunSeries& run = runs[i];
     const std::string behind = suffix(runs, i);
@@ -175,13 +204,13 @@ void timeline(pages::Page& page, const Runs& runs) {
     for (const RunSeries::Event& fault : run.faults)
       lanes.marks.push_back({fault.t_s, short_fault(fault.text) + behind});
     for (const auto* list : {&run.faults, &run.guard_trips, &run.stops}) {
-      for (const RunSeries::Event& event : *list)
-        events.rows.push_back({fmt::format("{:.2f}{}", event.t_s, behind), event.text});
+      for (const RunSeries::Event& event : *list) events.push_back({event, behind});
     }
   }
   if (!lanes.marks.empty()) lanes.lanes.push_back({"faults", {}});  // room for the marks' words
   page.lanes(lanes);
-  if (!events.rows.empty()) page.table(events);
+  name_steps(page, runs);
+  events_table(page, std::move(events));
   steps_table(page, runs);
 }
 

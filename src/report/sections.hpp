@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -36,6 +37,7 @@ struct RunLine {
   std::string colour;
   double width_px = 1.3;
   bool dashed = false, stepped = false;
+  double widens_from = -std::numeric_limits<double>::infinity(), widens_to = std::numeric_limits<double>::infinity();
 };
 
 /// One chart with the lines of all runs: lines_of(number of a run) gives that run's. No chart if there is no line.

@@ -31,12 +31,14 @@ class Film {
   static constexpr int kTicksPerFrame = 4;
 
   bool due() noexcept;
+  void face(const ScenarioStep& step);  ///< turns the camera to where the step's motion is seen
   void shoot(double time_s, const std::string& words);
 
   sim::World& world_;
   sim::Renderer renderer_;
   sim::VideoWriter writer_;
   std::int64_t ticks_ = 0;
+  const ScenarioStep* step_ = nullptr;  ///< that the camera faces
   std::string failure_;
 };
 

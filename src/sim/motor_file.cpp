@@ -43,7 +43,13 @@ model::ActuatorParameters read_actuator(files::ConfigReader& joint) {
 }  // namespace
 
 ActuatorsByJoint read_motor_file(const std::filesystem::path& file) {
+  if (std::filesystem::exists(file / "motor.yaml"))
+    throw files::ConfigError(
+        fmt::format("{}: is a folder; did you mean {}?", file.string(), (file / "motor.yaml").string()));
   files::ConfigReader reader = files::ConfigReader::from_file(file);
+  constexpr const char* kExpected = "a motor.yaml, as pmg_calibrate_motor and pmg_diagnose write it";
+  if (reader.has("urdf")) reader.fail("urdf", "is of a robot", kExpected);
+  if (!reader.has("joints")) reader.fail("joints", "is missing", kExpected);
   ActuatorsByJoint actuators;
   files::ConfigReader joints = reader.map("joints");
   for (const std::string& name : joints.keys()) {

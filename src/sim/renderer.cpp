@@ -102,6 +102,7 @@ struct Renderer::Impl {
     const double share = first ? 1.0 : 1.0 - std::exp(-elapsed_s / options.follow_s);
     Eigen::Map<Eigen::Vector3d> look(camera.lookat);
     look += share * (target - look);
+    camera.azimuth += share * std::remainder(azimuth_deg - camera.azimuth, 360.0);
     last_time_s = data->time;
   }
 
@@ -136,6 +137,7 @@ struct Renderer::Impl {
   mjrRect viewport;
   std::vector<std::uint8_t> rows, rgb;  // from the bottom up, from the top down
   std::optional<double> last_time_s;
+  double azimuth_deg = options.azimuth_deg;  // where the camera is turning to
 };
 
 Renderer::Renderer(const mjModel* model, const RendererOptions& options)
@@ -158,6 +160,8 @@ const std::vector<std::uint8_t>& Renderer::render(mjData* data, const std::strin
                 r.rgb.begin() + static_cast<std::ptrdiff_t>(y));
   return r.rgb;
 }
+
+void Renderer::look_from(double azimuth_deg) { impl_->azimuth_deg = azimuth_deg; }
 
 int Renderer::width() const { return impl_->options.width; }
 int Renderer::height() const { return impl_->options.height; }

@@ -48,6 +48,9 @@ class Renderer {
                                           const std::optional<Rope>& rope = std::nullopt,
                                           std::span<const Bar> bars = {});
 
+  /// Turns the camera that follows to this azimuth, on the shorter way, as softly as it follows.
+  void look_from(double azimuth_deg);
+
   int width() const;
   int height() const;
 

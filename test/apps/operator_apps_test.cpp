@@ -189,7 +189,9 @@ TEST_F(OperatorApps, WithoutAControllerThatIsSaid) {
          {"pmg_send stop --timeout 0.3", "pmg_send stand --timeout 0.3", "pmg_watch --once --timeout 0.3"}) {
       const test::Finished unheard = run(command);
       EXPECT_EQ(unheard.exit_code, 1) << command;
-      EXPECT_THAT(unheard.err, HasSubstr("no controller is heard on udpm://239.255.76.67:7667?ttl=0")) << command;
+      EXPECT_THAT(unheard.err,
+                  HasSubstr("no controller is heard on udpm://239.255.76.67:7667?ttl=0; start pmg_controller"))
+          << command;
     }
     const test::Finished named = run("pmg_send stand --robot z9 --timeout 0.3");
     EXPECT_EQ(named.exit_code, 1);

@@ -8,6 +8,7 @@
 #include "apps/running_program.hpp"
 #include "calib/fit_problem.hpp"
 #include "calib/synthetic_bench.hpp"
+#include "effects/fit_words.hpp"
 #include "recorded_benches.hpp"
 #include "sim/motor_file.hpp"
 
@@ -42,7 +43,7 @@ class PmgCalibrateMotor : public testing::Test {
 };
 
 TEST_F(PmgCalibrateMotor, WritesAMotorThatTheSimulationReads) {
-  const test::Finished done = run({"--also", "friction", "--fit", "kp_Nm_per_rad > 0 and file != run3.csv", "--score",
+  const test::Finished done = run({"--also", "coulomb", "--fit", "kp_Nm_per_rad > 0 and file != run3.csv", "--score",
                                    "file == run3.csv", "--json"});
   EXPECT_EQ(done.exit_code, 0) << done.err;
   const auto json = nlohmann::json::parse(done.out);
@@ -86,8 +87,8 @@ TEST_F(PmgCalibrateMotor, RefusesBadInputInOneLineAndWritesNothing) {
 
 TEST_F(PmgCalibrateMotor, KeepsWhatItHasWhenInterrupted) {
   test::RunningProgram program("pmg_calibrate_motor",
-                               {(folder_ / "servo").string(), "--also", "friction", "delay", "--starts", "1000",
-                                "--out", out_.string(), "--threads", "1"},
+                               {(folder_ / "servo").string(), "--also", "coulomb", "delay", "--starts", "1000", "--out",
+                                out_.string(), "--threads", "1"},
                                folder_);
   // Its handler is installed before it reads; earlier, SIGINT would end it like any program.
   const fs::path signals = fs::path("/proc") / std::to_string(program.id()) / "status";
@@ -118,17 +119,17 @@ TEST_F(PmgCalibrateMotor, RefusesDegreesByNameAndKeptTheyAreOffTheirData) {
   }
   fs::remove_all(folder_ / "servo");
   test::write_bench(folder_ / "servo", degrees);
-  const test::Finished refused = run({"--also", "friction"});
+  const test::Finished refused = run({"--also", "coulomb"});
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.err,
               AllOf(HasSubstr("unit: column q_rad"), HasSubstr("degrees"), HasSubstr("--data-faults correct")));
   EXPECT_FALSE(fs::exists(out_)) << "nothing is fitted";
-  const test::Finished kept = run({"--also", "friction", "--starts", "2", "--data-faults", "keep"});
+  const test::Finished kept = run({"--also", "coulomb", "--starts", "2", "--data-faults", "keep"});
   EXPECT_EQ(kept.exit_code, 1);
   EXPECT_THAT(kept.out, testing::StartsWith("OFF ITS DATA: fault of the data, unit"));
   EXPECT_THAT(test::text_of(out_ / "motor.yaml"), testing::StartsWith("# OFF ITS DATA: "));
   EXPECT_THAT(test::text_of(out_ / "report.html"), testing::Not(HasSubstr("class=\"verdict good\"")));
-  const test::Finished corrected = run({"--also", "friction", "--starts", "2", "--data-faults", "correct"});
+  const test::Finished corrected = run({"--also", "coulomb", "--starts", "2", "--data-faults", "correct"});
   EXPECT_EQ(corrected.exit_code, 0) << corrected.out;
   EXPECT_NEAR(sim::read_motor_file(out_ / "motor.yaml").at("servo").friction.coulomb_Nm, 0.3, 0.03);
 }
@@ -140,7 +141,7 @@ TEST_F(PmgCalibrateMotor, FitsTheLoadThatBenchYamlCallsUnknown) {
       yaml.replace(at + key.size(), yaml.find_first_of(",}", at) - at - key.size(), "unknown");
   }
   std::ofstream(folder_ / "servo" / "bench.yaml") << yaml;
-  run({"--also", "friction", "--starts", "2"});
+  run({"--also", "coulomb", "--starts", "2"});
   const auto json = nlohmann::json::parse(test::text_of(out_ / "fit.json"));
   for (const char* name : {"load.inertia_scale", "load.gravity_scale"}) {
     ASSERT_TRUE(json["parameters"].contains(name)) << name;
@@ -149,11 +150,18 @@ TEST_F(PmgCalibrateMotor, FitsTheLoadThatBenchYamlCallsUnknown) {
   EXPECT_THAT(test::text_of(out_ / "motor.yaml"), HasSubstr("these runs don't tell"));
 }
 
+TEST_F(PmgCalibrateMotor, SaysTodaysWordForAnEarlierOne) {
+  const test::Finished done = run({"--also", "friction", "--starts", "2"});
+  EXPECT_EQ(done.exit_code, 0) << done.out;
+  EXPECT_THAT(done.err, HasSubstr("--also friction: the word is coulomb now"));
+  EXPECT_NEAR(sim::read_motor_file(out_ / "motor.yaml").at("servo").friction.coulomb_Nm, 0.3, 0.03);
+}
+
 TEST_F(PmgCalibrateMotor, ExplainsItself) {
   test::RunningProgram program("pmg_calibrate_motor", {"--help"}, folder_);
   EXPECT_EQ(program.wait(), 0);
   EXPECT_THAT(program.out(), AllOf(HasSubstr("Example:"), HasSubstr("Exit codes:")));
-  for (const std::string& word : calib::effect_words()) EXPECT_THAT(program.out(), HasSubstr(word));
+  for (const std::string& word : effects::fit_words()) EXPECT_THAT(program.out(), HasSubstr(word));
 }
 
 // Janot, Gautier, Brunot 2019 publish M 95.1 kg, Fv 203.5 N s/m, Fc 20.4 N. Rollouts of the closed loop alone are 8 %

@@ -98,6 +98,8 @@ TEST_F(PmgReport, RefusesBadInputInOneLine) {
   refused({(folder_ / "none.lcm").string(), "--out", page_}, "there is no such file");
   refused({(folder_).string(), "--out", page_}, "no log in this folder");
   refused({log("a.lcm"), "--out", "/dev/full"}, "can't be written");
+  refused({log("a.lcm"), "--out", folder_.string()}, "is a folder; expected a file for the page, as ");
+  refused({log("a.lcm"), page_}, "page.html: is no log; --out ");
   const std::string a = log("a.lcm");
   refused({a, a, a, a, a, "--out", page_}, "expected 4 at most");
 }

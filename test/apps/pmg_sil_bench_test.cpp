@@ -24,6 +24,7 @@ class RobotBench : public testing::Test {
   int run(const std::string& program, const std::vector<std::string>& arguments) {
     test::RunningProgram running(program, arguments, folder_);
     const int code = running.wait();
+    out_ = running.out();
     err_ = running.err();
     return code;
   }
@@ -37,7 +38,7 @@ class RobotBench : public testing::Test {
 
   const fs::path folder_ = fs::path(testing::TempDir()) /
                            ("bench " + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-  std::string err_;
+  std::string out_, err_;
 };
 
 /// A joint, and its motor in the simulation: a motor.yaml's, or robot.yaml's alone.
@@ -74,7 +75,7 @@ TEST_P(KnownMotor, ComesBackWithinOnePercent) {
     arguments.insert(arguments.end(), {"--motor", at("motor.yaml")});
   }
   ASSERT_EQ(run("pmg_sil", arguments), 0) << err_;
-  ASSERT_EQ(run("pmg_calibrate_motor", {at("recorded"), "--also", "friction", "damping", "--starts", "3", "--threads",
+  ASSERT_EQ(run("pmg_calibrate_motor", {at("recorded"), "--also", "coulomb", "viscous", "--starts", "3", "--threads",
                                         "2", "--out", at("fit")}),
             0)
       << err_;
@@ -112,7 +113,7 @@ TEST_F(RobotBench, ShowsWhatIsWornInTheExamplesKnee) {
       0)
       << err_;
   ASSERT_EQ(run("pmg_calibrate_motor",
-                {at("knee"), "--also", "friction", "damping", "--threads", "2", "--out", at("calibrated")}),
+                {at("knee"), "--also", "coulomb", "viscous", "--threads", "2", "--out", at("calibrated")}),
             0)
       << err_;
   ASSERT_EQ(run("pmg_sil", {"--robot", "z1", "--bench", "left_knee", "--excitation", at("excitation"), "--motor",
@@ -139,9 +140,13 @@ TEST_F(RobotBench, ShowsWhatIsWornInTheExamplesKnee) {
   const double floor = diagnosis["noise_floor"];
   EXPECT_GT(diagnosis["held_out_error_before"].get<double>(), 8.0 * floor) << "something was wrong";
   EXPECT_LT(diagnosis["held_out_error_after"].get<double>(), 1.5 * floor) << "and little of it is left";
-  // The found motor can drive the simulation.
-  const model::RobotModel robot = model::load_robot(pmg::test::project_folder() + "/config/robots/z1");
-  EXPECT_NO_THROW(sim::read_motor_file(at("why/motor.yaml"), robot.joint_index));
+  // The command at the summary's end, typed as it is printed, simulates the robot with the found motor.
+  const std::string before = "simulate with what was found: ";
+  const std::size_t line = out_.find(before);
+  ASSERT_NE(line, std::string::npos) << out_;
+  const std::string command = out_.substr(line + before.size(), out_.find('\n', line) - line - before.size());
+  EXPECT_EQ(std::system((command + " >/dev/null").c_str()), 0) << command;
+  EXPECT_EQ(nlohmann::json::parse(std::ifstream(at("why/stand/summary.json")))["fell"], false);
 }
 
 TEST_F(RobotBench, WritesNothingForBadInput) {

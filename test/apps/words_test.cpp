@@ -133,6 +133,7 @@ TEST_F(Words, WhatIsMissingOrTooMuchIsSaid) {
               "pmg_clips synth: --out is missing: directory for the clips (pmg_clips synth --help shows an example)");
   expect_line("pmg_clips show again",
               "pmg_clips show: 'again' is one argument too many (pmg_clips show --help shows an example)");
+  expect_line("pmg_send walk vx 0.3 --for 3", "pmg_send walk: 'vx' is one argument too many; did you mean --vx?");
   expect_line("pmg_sil --robot", "pmg_sil: --robot: its value is missing");
   expect_line("pmg_sil --seed 1 --seed 2", "pmg_sil: --seed: is given more than once; expected it once");
   expect_line("pmg_sil --video --realtime", "pmg_sil: --realtime can't be given together with --video");
@@ -148,6 +149,8 @@ TEST_F(Words, AValueThatIsNoneSaysWhatWasExpected) {
     expect_line(std::string("pmg_send walk --for 1 --vx ") + value,
                 std::string("pmg_send walk: --vx: '") + value + "' isn't a finite number");
   }
+  expect_line("pmg_send walk --for 1 --vx 0,3",
+              "pmg_send walk: --vx: '0,3' isn't a finite number; decimals come behind a point");
   expect_line("pmg_controller --hal sil --duration nan", "pmg_controller: --duration: 'nan' isn't a number above 0");
   expect_line("pmg_eval gait --out x --jobs 0", "pmg_eval gait: --jobs: '0' isn't a number from 1 to 1024");
   expect_line("pmg_diagnose --step 1", "pmg_diagnose: --step: '1' isn't a number from 1e-05 to 0.01");
@@ -170,6 +173,13 @@ TEST_F(Words, NamesFromAClosedListAreMatchedToTheNearest) {
   EXPECT_THAT(run("pmg_sil --policy none --scenario " + (folder_ / "s.yaml").string() + " --out x").err,
               HasSubstr("s.yaml:3:"));
   EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+TEST_F(Words, AFileWhereAFolderIsExpectedIsSaidToBeOne) {
+  std::ofstream(folder_ / "notes.txt") << "mine\n";
+  const std::string notes = (folder_ / "notes.txt").string();
+  expect_line("pmg_sil --policy none --scenario stand --out " + notes,
+              "pmg_sil: " + notes + ": a file has this name; expected a folder, or a new name");
 }
 
 TEST_F(Words, WhichDrivesThisBuildHasIsSaid) {

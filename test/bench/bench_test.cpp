@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <fstream>
 #include <functional>
 
 #include "calib/synthetic_bench.hpp"
@@ -69,6 +71,17 @@ TEST_F(BenchFiles, AColumnThatIsNearlyAKnownOneIsAskedAbout) {
   }
   replace("runs.csv", "trajectory", "day");
   EXPECT_EQ(refusal(), "accepted") << "columns of one's own are free";
+}
+
+TEST_F(BenchFiles, ATableOfAnotherSeparatorIsSaidToBeOne) {
+  std::ifstream in(folder_ / "runs.csv");
+  const std::string text((std::istreambuf_iterator<char>(in)), {});
+  for (const auto& [separator, name] : {std::pair{';', "semicolons"}, std::pair{'\t', "tabs"}}) {
+    std::string other = text;
+    std::ranges::replace(other, ',', separator);
+    std::ofstream(folder_ / "runs.csv") << other;
+    EXPECT_THAT(refusal(), HasSubstr(std::string("runs.csv:1: columns are parted by ") + name + "; expected commas"));
+  }
 }
 
 TEST_F(BenchFiles, AFolderThatIsNoBenchIsToldWhatItIs) {

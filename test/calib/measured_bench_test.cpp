@@ -4,23 +4,10 @@
 #include <cmath>
 
 #include "calib/fit_problem.hpp"
-#include "calib/inverse_dynamics.hpp"
 #include "recorded_benches.hpp"
 
 namespace pmg {
 namespace {
-
-// Janot, Gautier, Brunot 2019 publish M 95.1 kg, Fv 203.5 N s/m, Fc 20.4 N, offset -3.16 N of the opposing force.
-TEST(MeasuredBench, OfALinearDriveGivesThePublishedParameters) {
-  PMG_NEEDS_BENCH("emps");
-  const bench::Bench bench = bench::read_bench(test::recorded_bench("emps"));
-  const auto found = calib::inverse_dynamics(bench, bench.read_runs(bench::RowFilter("")));
-  ASSERT_TRUE(found.has_value());
-  EXPECT_NEAR(found->armature_kg_m2.value / 95.1, 1.0, 0.03);
-  EXPECT_NEAR(found->viscous_Nm_s_per_rad.value / 203.5, 1.0, 0.03);
-  EXPECT_NEAR(found->coulomb_Nm.value / 20.4, 1.0, 0.03);
-  EXPECT_NEAR(found->offset_Nm.value / 3.16, 1.0, 0.03);
-}
 
 std::vector<calib::SingleJoint> joints(const bench::Bench& bench, const char* filter) {
   std::vector<calib::SingleJoint> found;

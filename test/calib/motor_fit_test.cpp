@@ -9,13 +9,11 @@
 
 #include "calib/fit_confidence.hpp"
 #include "calib/fit_results.hpp"
-#include "calib/inverse_dynamics.hpp"
 #include "calib/synthetic_bench.hpp"
 
 namespace pmg {
 namespace {
 
-using testing::AllOf;
 using testing::HasSubstr;
 
 calib::JointModel truth() {
@@ -29,21 +27,19 @@ calib::JointModel truth() {
   return model;
 }
 
-calib::FitProblem problem(const std::vector<std::string>& words, double noise_rad, int runs = 4) {
+calib::FitProblem problem(const std::vector<std::string>& names, double noise_rad, int runs = 4) {
   const bench::Bench bench = test::pd_bench(true);
   std::vector<calib::FitParameter> parameters;
   for (const std::string& name : calib::basic_parameters(bench))
     parameters.push_back(calib::fit_parameter(name, bench));
-  for (const std::string& word : words) {
-    for (const std::string& name : calib::effect_parameters(word))
-      parameters.push_back(calib::fit_parameter(name, bench));
-  }
+  for (const std::string& name : names) parameters.push_back(calib::fit_parameter(name, bench));
   return {parameters, {}, test::record(bench, truth(), runs, noise_rad)};
 }
 
 // 1 mrad of noise on 1200 samples moves these parameters by less than a percent.
 TEST(MotorFit, FindsWhatTheJointIsMadeOf) {
-  const calib::FitProblem joint = problem({"friction", "damping", "delay"}, 1e-3);
+  const calib::FitProblem joint =
+      problem({"friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad", "command.delay_s"}, 1e-3);
   const calib::Fit fit = calib::fit(joint, {.starts = 4, .threads = 2});
   for (const calib::FitParameter& p : joint.parameters()) {
     const double expected = calib::value(truth(), p.name);
@@ -56,7 +52,7 @@ TEST(MotorFit, FindsWhatTheJointIsMadeOf) {
 // almost as well. 0.4 mrad of noise leave a few percent of that factor open.
 TEST(MotorFit, FindsTheFactorOfAllTorquesUnderALightLoad) {
   const bench::Bench bench = test::pd_bench(true);
-  const calib::FitProblem usual = problem({"friction", "damping"}, 0.0);
+  const calib::FitProblem usual = problem({"friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad"}, 0.0);
   calib::JointModel light = truth();
   light.actuator.command.delay_s = 0.0;
   std::mt19937 random(1);
@@ -127,6 +123,23 @@ TEST(MotorFit, IsNeverWorseThanItsStart) {
   EXPECT_EQ(fit.loss_rad2, misleading.loss(fit.point));
 }
 
+// Two masses of which one is none: no stiffness of the shaft helps.
+TEST(MotorFit, SaysWhyNoModelWithinTheRangesCanBeSimulated) {
+  const calib::FitProblem usual = problem({}, 0.0, 2);
+  calib::JointModel without_rotor = truth();
+  without_rotor.actuator.transmission.armature_kg_m2 = 0.0;
+  const bench::Bench bench = test::pd_bench(true);
+  const calib::FitProblem shaft({calib::fit_parameter("transmission.stiffness_Nm_per_rad", bench),
+                                 calib::fit_parameter("transmission.damping_Nm_s_per_rad", bench)},
+                                without_rotor, usual.runs());
+  try {
+    calib::fit(shaft, {.starts = 1});
+    ADD_FAILURE() << "fitted";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), HasSubstr("needs an armature"));
+  }
+}
+
 TEST(MotorFit, KeepsTheBestWhenInterrupted) {
   const calib::FitProblem joint = problem({}, 0.0, 2);
   int calls = 0;
@@ -138,7 +151,8 @@ TEST(MotorFit, KeepsTheBestWhenInterrupted) {
 
 // Of 6 parameters with honest deviations, one in a thousand misses by more than 4.
 TEST(Confidence, CoversTheTruth) {
-  const calib::FitProblem joint = problem({"friction", "damping", "delay"}, 1e-3);
+  const calib::FitProblem joint =
+      problem({"friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad", "command.delay_s"}, 1e-3);
   const calib::Fit fit = calib::fit(joint, {.starts = 4, .threads = 2});
   const std::vector<calib::Confidence> confidence = calib::confidence(joint, fit.point, 2);
   for (std::size_t i = 0; i < confidence.size(); ++i) {
@@ -170,7 +184,8 @@ TEST(Confidence, CountsTheLastSampleOfEachRun) {
 
 TEST(Confidence, SaysWhatTheRunsCantTell) {
   // Both runs have the same kd, and none a commanded speed.
-  const calib::FitProblem joint = problem({"damping", "torque_speed"}, 1e-3, 2);
+  const calib::FitProblem joint =
+      problem({"friction.viscous_Nm_s_per_rad", "drive.stall_torque_Nm", "drive.no_load_rad_s"}, 1e-3, 2);
   calib::JointModel model = truth();
   model.actuator.drive.stall_torque_Nm = 400.0;  // far from all that the joint does
   model.actuator.drive.no_load_rad_s = 60.0;
@@ -271,7 +286,8 @@ TEST(UnknownLoad, IsThatOfBenchYamlAndOfAllLoadsOrNone) {
 
 // A search that stopped far from its optimum: the residual's slope says how far.
 TEST(Confidence, OfAnUnfinishedFitReachesToWhereTheFitWouldEnd) {
-  const calib::FitProblem joint = problem({"friction", "damping", "delay"}, 1e-4);
+  const calib::FitProblem joint =
+      problem({"friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad", "command.delay_s"}, 1e-4);
   calib::JointModel near = truth();
   near.actuator.transmission.armature_kg_m2 *= 1.05;
   near.actuator.friction.coulomb_Nm *= 0.97;
@@ -309,7 +325,8 @@ constexpr int kWithoutEnd = 1 << 30;
 
 TEST(FitWorth, GreenOnlyWhereTheFitEndedAndExplainsTheMotion) {
   const bench::Bench bench = test::pd_bench(true);
-  const calib::FitProblem joint = problem({"friction", "damping", "delay"}, 1e-3);
+  const calib::FitProblem joint =
+      problem({"friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad", "command.delay_s"}, 1e-3);
   const calib::FitResults whole = results_of(joint, bench, kWithoutEnd);
   EXPECT_EQ(worth_of(whole).sentence(), "");
   EXPECT_THAT(calib::fit_report(whole).html(), HasSubstr("class=\"verdict good\""));
@@ -319,7 +336,7 @@ TEST(FitWorth, GreenOnlyWhereTheFitEndedAndExplainsTheMotion) {
 
 TEST(FitWorth, ReadingsOfNoiseAreNothingThatAModelExplains) {
   const bench::Bench bench = test::pd_bench(true);
-  const calib::FitProblem joint = problem({"friction", "damping"}, 1e-3);
+  const calib::FitProblem joint = problem({"friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad"}, 1e-3);
   std::mt19937 random(3);
   std::normal_distribution<double> noise(0.0, 0.3);
   std::vector<calib::SingleJoint> runs;
@@ -334,7 +351,8 @@ TEST(FitWorth, ReadingsOfNoiseAreNothingThatAModelExplains) {
 
 TEST(FitWorth, OfFaultyDataAndOfAFitThatGetsNoBetter) {
   const bench::Bench bench = test::pd_bench(true);
-  const calib::FitProblem joint = problem({"friction", "damping", "delay"}, 1e-3);
+  const calib::FitProblem joint =
+      problem({"friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad", "command.delay_s"}, 1e-3);
   calib::FitResults results = results_of(joint, bench, kWithoutEnd);
   results.fitted.before = results.fitted.after;
   expect_everywhere(results, "NO BETTER: ", work::Grade::kNoBetter);
@@ -343,7 +361,8 @@ TEST(FitWorth, OfFaultyDataAndOfAFitThatGetsNoBetter) {
 }
 
 TEST(FitProblem, PointsAreWhatModelsAre) {
-  const calib::FitProblem joint = problem({"friction", "zero_offset", "rate_limit"}, 0.0, 1);
+  const calib::FitProblem joint =
+      problem({"friction.coulomb_Nm", "sensor.zero_offset_rad", "command.rate_limit_rad_s"}, 0.0, 1);
   calib::JointModel model = truth();
   model.actuator.sensor.zero_offset_rad = -0.02;
   model.actuator.command.rate_limit_rad_s = 5.0;
@@ -351,76 +370,6 @@ TEST(FitProblem, PointsAreWhatModelsAre) {
   for (const calib::FitParameter& p : joint.parameters()) {
     EXPECT_NEAR(calib::value(back, p.name), calib::value(model, p.name), 1e-12) << p.name;
   }
-}
-
-constexpr double kMass_kg = 95.0, kViscous_N_s_per_m = 200.0, kForwards_N = 17.0, kBackwards_N = 23.0;
-
-/// Ten seconds of a linear drive's sines, the force so much later or earlier than the position, with noise of 20 mV.
-std::pair<bench::Bench, bench::BenchRun> linear_drive(double force_late_s, double rate_hz, double pace = 1.0) {
-  bench::Bench bench;
-  bench.rig = bench::Rig::kLinear;
-  bench.law = bench::DriveLaw::kCascadePd;
-  bench.sample_rate_hz = rate_hz;
-  bench.known.drive.torque_per_unit_Nm = 35.0;
-  std::mt19937 random(3);
-  std::normal_distribution<double> noise_V(0.0, 0.02);
-  bench::BenchRun run;
-  for (int k = 0; k < static_cast<int>(10.0 * rate_hz); ++k) {
-    const double t = k / rate_hz, slow = 3.0 * pace, fast = 11.0 * pace;
-    run.recording.t_s.push_back(t);
-    run.recording.q_rad.push_back(-0.1 / slow * std::cos(slow * t) - 0.05 / fast * std::cos(fast * t));
-    const double then = t - force_late_s;
-    const double v = 0.1 * std::sin(slow * then) + 0.05 * std::sin(fast * then),
-                 a = 0.1 * slow * std::cos(slow * then) + 0.05 * fast * std::cos(fast * then);
-    const double force_N = kMass_kg * a + kViscous_N_s_per_m * v + (v > 0.0 ? kForwards_N : -kBackwards_N);
-    run.recording.drive_V.push_back(force_N / 35.0 + noise_V(random));
-  }
-  return {bench, run};
-}
-
-// Noise of 20 mV against volts: least squares finds the plant to a percent.
-TEST(InverseDynamics, FindsALinearDrivesParameters) {
-  auto [bench, run] = linear_drive(0.0, 1000.0);
-  const auto found = calib::inverse_dynamics(bench, {run});
-  ASSERT_TRUE(found.has_value());
-  EXPECT_NEAR(found->armature_kg_m2.value, kMass_kg, 0.01 * kMass_kg);
-  EXPECT_NEAR(found->viscous_Nm_s_per_rad.value, kViscous_N_s_per_m, 0.02 * kViscous_N_s_per_m);
-  EXPECT_NEAR(found->coulomb_Nm.value, 20.0, 0.3);
-  EXPECT_NEAR(found->offset_Nm.value, 3.0, 0.1);
-  EXPECT_LT(found->armature_kg_m2.deviation, 1.0);
-  EXPECT_EQ(calib::meaning_of_negative(*found), "");
-  run.recording.drive_V.clear();
-  EXPECT_FALSE(calib::inverse_dynamics(bench, {run}).has_value());
-}
-
-// Friction below zero is no friction: the tool says what is wrong with the recording instead, and takes nothing of it.
-TEST(InverseDynamics, SaysWhatNegativeFrictionMeans) {
-  // 50 ms too early, acceleration times mass passes for -50 ms (11 rad/s)^2 mass of viscous friction.
-  auto [bench, run] = linear_drive(-0.05, 1000.0);
-  const auto early = calib::inverse_dynamics(bench, {run});
-  ASSERT_TRUE(early.has_value());
-  ASSERT_LT(early->viscous_Nm_s_per_rad.value, 0.0);
-  EXPECT_THAT(calib::meaning_of_negative(*early),
-              AllOf(HasSubstr("Viscous friction below zero: no joint has that"), HasSubstr("early or late")));
-  calib::JointModel start;
-  std::vector<calib::FitParameter> unknowns = {calib::fit_parameter("transmission.armature_kg_m2", bench)};
-  EXPECT_FALSE(calib::take_inverse_dynamics(*early, bench, start, unknowns));
-  EXPECT_EQ(start.actuator, model::ActuatorParameters{});
-  EXPECT_EQ(unknowns.size(), 4U) << "inertia, both frictions and the offset: rollouts look for them";
-
-  // Sines of 7 Hz and 25 Hz are too fast for 80 samples a second.
-  auto [slow_bench, slow_run] = linear_drive(-0.01, 80.0, 14.0);
-  const auto coarse = calib::inverse_dynamics(slow_bench, {slow_run});
-  ASSERT_TRUE(coarse.has_value());
-  ASSERT_FALSE(calib::impossible_estimates(*coarse).empty());
-  EXPECT_THAT(calib::meaning_of_negative(*coarse), HasSubstr("too fast for 80 samples a second"));
-
-  calib::InverseDynamics small;
-  small.viscous_Nm_s_per_rad = {-0.01, 0.02};
-  EXPECT_THAT(calib::meaning_of_negative(small),
-              AllOf(HasSubstr("Viscous friction"), HasSubstr("too small to be seen")));
-  EXPECT_TRUE(calib::take_inverse_dynamics(small, bench, start, unknowns));
-  EXPECT_EQ(start.actuator.friction.viscous_Nm_s_per_rad, 0.0);
 }
 
 TEST(FitResults, UnitsAreThoseOfTheRig) {

@@ -200,6 +200,14 @@ TEST(FaultTable, EveryCodeIsInjectedAndDocumentedAndNothingElseIs) {
   EXPECT_TRUE(documented.empty()) << documented.begin()->first << " is documented, but no fault";
 }
 
+TEST(FaultTable, WhoIsToPutARobotUprightIsToldWhatLiftsASimulatedOne) {
+  for (const faults::FaultCode code : {faults::FaultCode::kTilt, faults::FaultCode::kTorsoAttitude}) {
+    const std::string told = advice(code);
+    EXPECT_NE(told.find("put it upright"), std::string::npos) << told;
+    EXPECT_NE(told.find("pmg_send lift"), std::string::npos) << told;
+  }
+}
+
 class FaultInjection : public testing::TestWithParam<InjectedFault> {};
 
 TEST_P(FaultInjection, TheDrivesAreDampedWithinTheDocumentedBusCycles) {

@@ -88,6 +88,15 @@ TEST(DiagnosisPage, ShowsCausesRivalsReasonsAndWhatToRecord) {
   EXPECT_EQ(checks.find("<td>dead band"), checks.rfind("<td>dead band")) << "once";
 }
 
+// 1.6 mrad called small, above a noise floor of 0.3, says nothing without what it is small beside.
+TEST(DiagnosisPage, AnIntegratorsErrorStandsBesideWhatItIsSmallBeside) {
+  Made made;
+  made.diagnosis.held_out_before = {0.00473, 0.004, 0.0055};
+  made.diagnosis.step.error.rms_rad = 0.00163;
+  EXPECT_THAT(made.html(), HasSubstr("With the model before, which misses the readings by 4.73 mrad on average, the "
+                                     "integrator&#39;s error is 1.63 mrad rms; with the causes it was not measured."));
+}
+
 TEST(DiagnosisPage, CallsOnlyThoseCausesOpenThatHaveARival) {
   Made made;
   made.diagnosis.verdict = evidence::Verdict::kAmbiguous;

@@ -32,7 +32,7 @@ calib::JointModel with_load_friction(calib::JointModel model, double share) {
   return model;
 }
 
-constexpr unsigned kSeed = 5;  // its check of load-dependent friction is sure that there is none
+constexpr unsigned kSeed = 10;  // its check of load-dependent friction is sure that there is none
 
 /// A bench without load-dependent friction, whose check says so.
 class Power : public testing::Test {

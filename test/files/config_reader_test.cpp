@@ -65,6 +65,15 @@ TEST_F(Reader, RefusesUnknownKeysAndSaysWhichAreKnown) {
   EXPECT_EQ(refusal([&] { r.finish(); }), "a.yaml:3:1: bb: is unknown; expected nothing besides a, c");
 }
 
+TEST_F(Reader, ADecimalCommaIsSaidToBeOne) {
+  EXPECT_THAT(refusal([&] {
+                ConfigReader r = reader("{vx_m_s: 0,3}");
+                r.required<double>("vx_m_s");
+                r.finish();
+              }),
+              HasSubstr("3: is no key but a number; expected decimals behind a point"));
+}
+
 TEST_F(Reader, RefusesMissingKeysWithTheirPath) {
   ConfigReader r = reader("a:\n  b: 1\n");
   ConfigReader nested = r.map("a");

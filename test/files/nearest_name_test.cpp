@@ -35,6 +35,13 @@ TEST(NearestName, IsNoneWhenNothingIsNear) {
   EXPECT_EQ(nearest_name("x", {}), "");
 }
 
+TEST(NearestName, TheSamePartsInAnotherOrderAreNear) {
+  const std::vector<std::string> joints = {"left_knee", "right_knee", "left_hip_yaw"};
+  EXPECT_EQ(nearest_name("knee_left", joints), "left_knee");
+  EXPECT_EQ(nearest_name("Hip-Yaw-Left", joints), "left_hip_yaw");
+  EXPECT_EQ(nearest_name("knee_middle", joints), "");
+}
+
 TEST(NearestName, ABeginningOfOneNameAloneIsNear) {
   EXPECT_EQ(nearest_name("calib", {"calibration", "clips"}), "calibration");
   EXPECT_EQ(nearest_name("left", {"left_knee", "left_ankle_pitch"}), "");

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "blind_plants/files.hpp"
+#include "files.hpp"
 
 namespace pmg::literature {
 
@@ -103,10 +103,10 @@ void write_bench(const std::filesystem::path& folder, const LiteraturePlant& pla
                         gains_cells(law, file.gains), file.load.mass_kg, file.load.length_m);
     if (temperature) rows += fmt::format("{:.1f},", file.recording.temp_C.front());
     rows += run.scored ? "score\n" : "fit\n";
-    hidden::write_text(folder / "runs" / name, csv(rig, file.recording));
+    write_text(folder / "runs" / name, csv(rig, file.recording));
   }
-  hidden::write_text(folder / "bench.yaml", bench_yaml(rig));
-  hidden::write_text(folder / "runs.csv", rows);
+  write_text(folder / "bench.yaml", bench_yaml(rig));
+  write_text(folder / "runs.csv", rows);
 }
 
 }  // namespace pmg::literature

@@ -8,9 +8,11 @@
 #include <mutex>
 #include <stdexcept>
 
-#include "blind_plants/files.hpp"
+#include "asked_for.hpp"
+#include "bench_files.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/diagnosis_json.hpp"
+#include "files.hpp"
 #include "files/config_error.hpp"
 #include "prepared_plant.hpp"
 #include "work/parallel.hpp"
@@ -21,18 +23,27 @@ namespace {
 
 using nlohmann::json;
 
-json diagnose(const PreparedPlant& prepared) {
+diagnosis::Diagnosis diagnose(const std::filesystem::path& bench, const model::ActuatorParameters& base) {
   diagnosis::DiagnoseOptions options;
-  options.fit = hidden::kFitFilter;
-  options.score = hidden::kScoreFilter;
-  options.model = prepared.base;
-  try {
-    json found = diagnosis::diagnosis_json(diagnosis::diagnose(bench::read_bench(prepared.bench), options));
-    for (const char* key : {"rejected", "options", "next_excitation"}) found.erase(key);
-    return found;
-  } catch (const files::ConfigError& error) {
-    return {{"verdict", "refused"}, {"causes", json::array()}, {"error", error.what()}};
-  }
+  options.fit = kFitFilter;
+  options.score = kScoreFilter;
+  options.model = base;
+  return diagnosis::diagnose(bench::read_bench(bench), options);
+}
+
+json kept(const diagnosis::Diagnosis& found) {
+  json all = diagnosis::diagnosis_json(found);
+  for (const char* key : {"rejected", "options", "next_excitation"}) all.erase(key);
+  return all;
+}
+
+/// With the recordings that the diagnosis asked for; null if it asked for none.
+json diagnose_again(const diagnosis::Diagnosis& found, const PreparedPlant& prepared,
+                    const std::filesystem::path& folder) {
+  if (found.verdict != evidence::Verdict::kAmbiguous || !found.next_excitation) return nullptr;
+  const LiteraturePlant plant = with_asked_runs(prepared.plant, *found.next_excitation);
+  write_bench(folder, plant, plant.machine, 0, true);
+  return kept(diagnose(folder, prepared.base));
 }
 
 /// Drops what a killed campaign left after the last whole line.
@@ -66,8 +77,16 @@ json examine(std::uint64_t seed, const std::filesystem::path& folder, bool keep)
   const double begin_s = thread_seconds();
   const PreparedPlant prepared = prepare(seed, folder);
   const double prepared_s = thread_seconds() - begin_s;
-  json result = {{"truth", prepared.truth}, {"diagnosis", diagnose(prepared)}, {"prepared_s", prepared_s}};
+  json result = {{"truth", prepared.truth}, {"prepared_s", prepared_s}};
+  std::optional<diagnosis::Diagnosis> found;
+  try {
+    found = diagnose(prepared.bench, prepared.base);
+    result["diagnosis"] = kept(*found);
+  } catch (const files::ConfigError& error) {
+    result["diagnosis"] = {{"verdict", "refused"}, {"causes", json::array()}, {"error", error.what()}};
+  }
   result["seconds"] = thread_seconds() - begin_s - prepared_s;
+  if (found) result["asked"] = diagnose_again(*found, prepared, folder / "asked");
   if (!keep) std::filesystem::remove_all(folder);
   return result;
 }

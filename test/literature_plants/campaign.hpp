@@ -22,8 +22,9 @@ std::vector<std::uint64_t> seeds_for(Use use, std::uint64_t first, std::uint64_t
 double thread_seconds();
 
 /// Makes the plant of the seed in the folder and diagnoses it. The result has truth, diagnosis (verdict "refused" and
-/// the reader's message as `error` where the bench can't be read), seconds (of the diagnosis) and prepared_s (of the
-/// plant's making and calibration), both CPU time of this thread. keep: the folder stays.
+/// the reader's message as `error` where the bench can't be read), asked (the diagnosis with the recordings that an
+/// ambiguous one asked for; null otherwise), seconds (of the first diagnosis) and prepared_s (of the plant's making
+/// and calibration), both CPU time of this thread. keep: the folder stays.
 nlohmann::json examine(std::uint64_t seed, const std::filesystem::path& folder, bool keep);
 
 /// The results of a campaign's file, in the order of seeds; none without a file. A last line without its end is what a

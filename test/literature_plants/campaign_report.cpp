@@ -32,7 +32,7 @@ auto counted(const char* kind) {
 Rate parameters_inside(const std::vector<Judgement>& judgements) {
   int kept = 0, of = 0;
   for (const Judgement& j : judgements) {
-    for (const hidden::ScoredParameter& p : j.score.parameters) {
+    for (const ScoredParameter& p : j.score.parameters) {
       ++of;
       kept += p.inside() ? 1 : 0;
     }
@@ -43,16 +43,19 @@ Rate parameters_inside(const std::vector<Judgement>& judgements) {
 
 std::vector<Rate> rates_of(const std::vector<Judgement>& all) {
   const auto right = [](const Judgement& j) { return j.right; };
+  const auto effects = [](const Judgement& j) {
+    return j.counts && (j.score.kind == "single" || j.score.kind == "double");
+  };
   const auto any = [](const Judgement& j) { return j.counts; };
   std::vector<Rate> rates;
   rates.push_back(rate_of("singles named", all, counted("single"), right));
+  rates.push_back(rate_of("one effect or two: all named", all, effects, right));
+  rates.push_back(rate_of("verdict ambiguous, of singles and doubles", all, effects,
+                          [](const Judgement& j) { return j.score.ambiguous; }));
   rates.push_back(rate_of(
-      "one effect or two: all named", all,
-      [](const Judgement& j) { return j.counts && (j.score.kind == "single" || j.score.kind == "double"); }, right));
-  rates.push_back(rate_of(
-      "verdict ambiguous, of singles and doubles", all,
-      [](const Judgement& j) { return j.counts && (j.score.kind == "single" || j.score.kind == "double"); },
-      [](const Judgement& j) { return j.score.ambiguous; }));
+      "of these settled by the recordings asked for", all,
+      [&](const Judgement& j) { return effects(j) && j.score.ambiguous; },
+      [](const Judgement& j) { return j.score.settled; }));
   rates.push_back(rate_of("doubles: both named", all, counted("double"), right));
   rates.push_back(
       rate_of("data faults named", all, counted("fault"), [](const Judgement& j) { return j.fault_named; }));
@@ -74,12 +77,15 @@ std::vector<Rate> rates_of(const std::vector<Judgement>& all) {
 }
 
 std::string row(const Judgement& j) {
-  return fmt::format("| {} | {} | {} | {} | {} | {}{} | {:.1f} |\n", j.score.seed, j.score.kind, j.law, j.score.planted,
-                     j.score.said,
+  return fmt::format("| {} | {} | {} | {} | {} | {}{} | {:.1f} |\n", j.score.seed, j.score.kind, j.law, j.planted,
+                     j.said,
                      !j.counts ? "weak"
                      : j.right ? "yes"
                                : "no",
-                     j.false_cause ? ", false cause" : "", j.score.seconds);
+                     j.false_cause     ? ", false cause"
+                     : j.score.settled ? ", settled"
+                                       : "",
+                     j.score.seconds);
 }
 
 }  // namespace
@@ -90,7 +96,7 @@ CampaignReport report_of(std::vector<Judgement> judgements) {
   report.rates = rates_of(report.judgements);
   std::vector<double> widths;
   for (const Judgement& j : report.judgements) {
-    for (const hidden::ScoredParameter& p : j.score.parameters) widths.push_back(p.width());
+    for (const ScoredParameter& p : j.score.parameters) widths.push_back(p.width());
     report.seconds += j.score.seconds / static_cast<double>(report.judgements.size());
   }
   report.median_width = fitting::median(widths);
@@ -144,8 +150,8 @@ nlohmann::ordered_json report_json(const CampaignReport& report) {
   for (const Judgement& j : report.judgements) {
     plants.push_back({{"seed", j.score.seed},
                       {"stratum", j.score.kind},
-                      {"planted", j.score.planted},
-                      {"said", j.score.said},
+                      {"planted", j.planted},
+                      {"said", j.said},
                       {"counts", j.counts},
                       {"right", j.right},
                       {"false_cause", j.false_cause}});

@@ -6,9 +6,11 @@
 
 #include <fstream>
 
-#include "blind_plants/calibration.hpp"
-#include "blind_plants/files.hpp"
+#include "asked_for.hpp"
+#include "bench_files.hpp"
+#include "calibration.hpp"
 #include "campaign_report.hpp"
+#include "files.hpp"
 #include "judgement.hpp"
 #include "prepared_plant.hpp"
 
@@ -61,7 +63,7 @@ TEST(LiteratureSeeds, OddOnesAreOnlyForTheFinalReport) {
 TEST(LiteratureCampaign, GoesOnAfterAKillAndKeepsEvenAndOddApart) {
   const fs::path file = scratch("resume") / "results.jsonl";
   const std::string whole = result("clean", json::array(), json::array(), said("none", {}), 4).dump();
-  hidden::write_text(file, whole + "\n" + whole.substr(0, 20));
+  write_text(file, whole + "\n" + whole.substr(0, 20));
   EXPECT_EQ(read_results(file).size(), 1U);
   Campaign campaign{.results = file};
   std::vector<int> made;
@@ -72,7 +74,7 @@ TEST(LiteratureCampaign, GoesOnAfterAKillAndKeepsEvenAndOddApart) {
   EXPECT_EQ(read_results(file).size(), 2U);
   EXPECT_FALSE(fs::exists(file.string() + ".plants"));
   EXPECT_THROW(run(campaign, {5}), std::invalid_argument);
-  hidden::write_text(file, "not a result\n");
+  write_text(file, "not a result\n");
   EXPECT_THROW(read_results(file), std::runtime_error);
 }
 
@@ -163,29 +165,77 @@ TEST(LiteratureReport, SaysWhichStratumOrVerdictIsAbsent) {
 }
 
 // The two simulations agree where nothing is hidden: the calibration of a healthy joint leaves about what noise leaves,
-// 1 / sqrt(2) of a floor, and half a floor for what neither model has of the other (the loop's ticks, for one).
+// 1 / sqrt(2) of a floor, and half a floor for what neither model has of the other (the loop's ticks, for one). On the
+// day of the calibration, and on the day of the bench that is diagnosed.
 TEST(LiteraturePlants, AHealthyJointIsCalibratedToItsNoise) {
   for (const std::uint64_t seed : {20ULL, 24ULL, 26ULL, 66ULL}) {  // clean: position PD, servo, torque, cascade
     const PreparedPlant prepared = prepare(seed, scratch("healthy"));
-    EXPECT_LT(prepared.truth.at("healthy_error_rad").get<double>(),
-              1.2 * prepared.truth.at("noise_floor_rad").get<double>())
-        << seed;
+    const double floor_rad = prepared.truth.at("noise_floor_rad").get<double>();
+    EXPECT_LT(prepared.truth.at("healthy_error_rad").get<double>(), 1.2 * floor_rad) << seed;
+    EXPECT_LT(rollout_error_rad(prepared.base, prepared.bench, kScoreFilter), 1.2 * floor_rad) << seed;
   }
+}
+
+diagnosis::NextExcitation two_of(const Rig& rig) {
+  diagnosis::NextRun run;
+  run.name = "asked0";
+  run.times = 2;
+  run.kp = 1.5 * rig.gains.front().kp;
+  run.kd = rig.gains.front().kd;
+  run.load_mass_kg = rig.loads.back().mass_kg;
+  run.load_length_m = rig.loads.back().length_m;
+  for (int k = 0; k < 300; ++k) run.q_cmd_rad.push_back(k < 100 ? 0.0 : 0.4);
+  diagnosis::NextExcitation asked;
+  asked.runs = {run};
+  return asked;
+}
+
+TEST(LiteratureAskedFor, RunsAreOfTheSameJointAfterItsSession) {
+  LiteraturePlant plant = plant_of(20);
+  plant.rig.warms_K = 40.0;
+  plant.machine.thermal.friction_per_K = -0.02;
+  const LiteraturePlant after = with_asked_runs(plant, two_of(plant.rig));
+  const std::size_t before = plant.rig.runs.size();
+  ASSERT_EQ(after.rig.runs.size(), before + 2);
+  for (std::size_t i = 0; i < before; ++i) {
+    EXPECT_EQ(record(after.machine, after.rig, 20, i).q_rad, record(plant.machine, plant.rig, 20, i).q_rad) << i;
+  }
+  const Recording asked = record(after.machine, after.rig, 20, before),
+                  again = record(after.machine, after.rig, 20, before + 1);
+  EXPECT_NE(asked.q_rad, again.q_rad) << "another start, another noise";
+  EXPECT_NEAR(asked.q_rad.back(), 0.4, 0.2);
+  EXPECT_NEAR(asked.temp_C.front(), kReference_C + 40.0 * (1.0 - std::exp(-3.0)), 0.6);
+}
+
+TEST(LiteratureAskedFor, RunsAreFittedAndNothingThatWasHeldOutIs) {
+  const LiteraturePlant plant = plant_of(20), after = with_asked_runs(plant, two_of(plant.rig));
+  const fs::path folder = scratch("asked");
+  write_bench(folder / "before", plant, plant.machine, 0, true);
+  write_bench(folder / "after", after, after.machine, 0, true);
+  const bench::Bench before = bench::read_bench(folder / "before"), with = bench::read_bench(folder / "after");
+  EXPECT_EQ(with.read_runs(bench::RowFilter(kScoreFilter)).size(),
+            before.read_runs(bench::RowFilter(kScoreFilter)).size());
+  const std::vector<bench::BenchRun> fitted = with.read_runs(bench::RowFilter(kFitFilter));
+  ASSERT_EQ(fitted.size(), before.read_runs(bench::RowFilter(kFitFilter)).size() + 2);
+  EXPECT_EQ(fitted.back().trajectory, "asked0");
+  EXPECT_NEAR(fitted.back().kp, 1.5 * plant.rig.gains.front().kp, 1e-3);
+  EXPECT_NEAR(fitted.back().load.gravity_Nm, plant.rig.loads.back().gravity_Nm, 1e-3);
 }
 
 // The planted numbers, put into the calibration, bring the project's simulation back to what it leaves of the healthy
 // joint, where the form is the project's.
 TEST(LiteraturePlants, PlantedNumbersAreAllThatTheModelLacks) {
-  for (const std::uint64_t seed : {0ULL, 2ULL}) {  // sensor lag of first order, torque-speed line
+  // Sensor lag of first order, torque-speed line; sensor hysteresis, another gain, delay, Coulomb friction.
+  for (const std::uint64_t seed : {0ULL, 2ULL, 244ULL, 482ULL, 522ULL, 646ULL}) {
     const PreparedPlant prepared = prepare(seed, scratch("numbers"));
     model::ActuatorParameters model = prepared.base;
     const json& planted = prepared.truth.at("effects").front();
-    ASSERT_GE(planted.at("moves_floors").get<double>(), 2.0);
+    ASSERT_GE(planted.at("moves_floors").get<double>(), 2.0) << planted.at("form");
     for (const auto& [name, value] : planted.at("parameters").items()) {
       model::actuator_parameter(name).in(model) = value.get<double>();
     }
     EXPECT_LT(
-        hidden::rollout_error_rad(model, prepared.bench, hidden::kScoreFilter),
+        rollout_error_rad(model, prepared.bench, kScoreFilter),
         prepared.truth.at("healthy_error_rad").get<double>() + 0.5 * prepared.truth.at("noise_floor_rad").get<double>())
         << seed;
   }

@@ -3,8 +3,8 @@
 
 #include <deque>
 
-#include "blind_plants/randomness.hpp"
 #include "drive_output.hpp"
+#include "randomness.hpp"
 #include "sensor.hpp"
 
 namespace pmg::literature {
@@ -19,7 +19,7 @@ struct Command {
 
 class Drive {
  public:
-  Drive(const Machine& machine, hidden::Draw draw) : m_(machine), draw_(draw) {}
+  Drive(const Machine& machine, Draw draw) : m_(machine), draw_(draw) {}
 
   void reset(const Command& command);
   /// From that time on; late by what the command's way takes.
@@ -39,7 +39,7 @@ class Drive {
   DriveOutput bridge(double duty, double motor_rad_s, double h_s);
 
   Machine m_;
-  hidden::Draw draw_;
+  Draw draw_;
   std::deque<Told> told_;
   Command newest_, taken_;
   double taken_s_ = -1.0, ticked_s_ = 0.0, computed_s_ = -1.0;

@@ -6,12 +6,12 @@
 #include <map>
 
 #include "bench/bench.hpp"
-#include "blind_plants/files.hpp"
-#include "blind_plants/score.hpp"
 #include "campaign.hpp"
 #include "data_faults/data_faults_report.hpp"
+#include "files.hpp"
 #include "files/config_error.hpp"
 #include "judgement.hpp"
+#include "score.hpp"
 #include "sim/motor_file.hpp"
 
 namespace pmg::literature {
@@ -64,9 +64,8 @@ ExaminedPlant examine_faults(const std::filesystem::path& folder) {
   const double begin_s = thread_seconds();
   nlohmann::ordered_json said;
   try {
-    data_faults::add_to(
-        said, data_faults::examine(bench::read_bench(folder / "bench"), {hidden::kFitFilter, hidden::kScoreFilter},
-                                   sim::read_motor_file(folder / "base.yaml").at("bench"), {}, 1));
+    data_faults::add_to(said, data_faults::examine(bench::read_bench(folder / "bench"), {kFitFilter, kScoreFilter},
+                                                   sim::read_motor_file(folder / "base.yaml").at("bench"), {}, 1));
   } catch (const files::ConfigError& error) {
     said["data_faults"] = json::array();
   }
@@ -76,7 +75,7 @@ ExaminedPlant examine_faults(const std::filesystem::path& folder) {
   plant.named = judgement.named, plant.placed = judgement.placed, plant.false_fault = judgement.false_fault;
   plant.counts = true;
   for (const json& fault : plant.truth.at("faults")) {
-    plant.counts = plant.counts && fault.at("moves_floors").get<double>() >= hidden::kStrong_floors;
+    plant.counts = plant.counts && fault.at("moves_floors").get<double>() >= kStrong_floors;
     plant.delay = plant.delay || !fault.at("same_here").empty();
   }
   return plant;

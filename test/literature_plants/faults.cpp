@@ -9,8 +9,6 @@ namespace pmg::literature {
 
 namespace {
 
-using hidden::Draw;
-
 enum Kind { kUnits, kDegrees, kSign, kMass, kGain, kSwapped, kShift };
 
 constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;

@@ -35,7 +35,7 @@ struct FiledRun {
 RigNeeds needs_of_fault(std::size_t kind);
 
 /// A fault of that kind. units_of_feed_forward makes the rig feed forward.
-DataFault draw_fault(hidden::Draw& draw, std::size_t kind, Rig& rig);
+DataFault draw_fault(Draw& draw, std::size_t kind, Rig& rig);
 
 /// The rig whose load isn't what was weighed, for wrong_mass; of other kinds the rig itself.
 Rig with_fault(const DataFault& fault, Rig rig);

@@ -13,7 +13,6 @@ std::vector<Form> drive_forms();
 std::vector<Form> sensor_forms();
 std::vector<Form> heat_forms();
 
-using hidden::Draw;
 using Planted = std::vector<PlantedParameter>;
 
 inline constexpr RigNeeds kAny{};

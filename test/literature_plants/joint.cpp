@@ -6,7 +6,7 @@
 namespace pmg::literature {
 
 Joint::Joint(const Machine& machine, std::uint64_t stream)
-    : m_(machine), mechanics_(machine), sensor_(machine.sensor), drive_(machine, hidden::Draw(stream, 31)) {}
+    : m_(machine), mechanics_(machine), sensor_(machine.sensor), drive_(machine, Draw(stream, 31)) {}
 
 void Joint::reset(double q_rad, const Command& command, double temperature_C) {
   mechanics_.reset(q_rad);

@@ -91,15 +91,15 @@ Judgement judge(const json& result) {
   Judgement j;
   json of_effects = result;
   of_effects["truth"] = truth_of_effects(truth);
-  j.score = hidden::score(of_effects);
-  j.score.planted = planted_text(truth);
-  j.score.said = said_text(diagnosis);
+  j.score = literature::score(of_effects);
+  j.planted = planted_text(truth);
+  j.said = said_text(diagnosis);
   j.law = truth.at("law").get<std::string>();
   j.floors = std::numeric_limits<double>::infinity();
   for (const char* key : {"effects", "faults"}) {
     for (const json& one : truth.at(key)) j.floors = std::min(j.floors, one.at("moves_floors").get<double>());
   }
-  j.counts = j.floors >= hidden::kStrong_floors;
+  j.counts = j.floors >= kStrong_floors;
   const FaultJudgement faults = judge_faults(truth, diagnosis);
   const bool as_effect = named_as_effect(truth, diagnosis);
   j.fault_named = faults.named || as_effect, j.fault_placed = faults.placed || as_effect;

@@ -5,12 +5,12 @@
 #include <optional>
 #include <string>
 
-#include "blind_plants/score.hpp"
+#include "score.hpp"
 
 namespace pmg::literature {
 
 struct Judgement {
-  hidden::Score score;        ///< of causes against planted effects
+  Score score;                ///< of causes against planted effects
   bool counts = false;        ///< clean, or every planted effect or fault moves the bench by two noise floors
   bool fault_named = false;   ///< its kind is among data_faults, or an effect that would make the same files is found
   bool fault_placed = false;  ///< and its runs are those that have it
@@ -19,8 +19,8 @@ struct Judgement {
   bool right = false;         ///< as its stratum asks
   /// residual_extension: whether its error on left-out data is below that of the model without it; absent without one.
   std::optional<bool> extension_better;
-  std::string law;
-  double floors = 0.0;  ///< of the weakest planted effect or fault
+  std::string law, planted, said;  ///< for people
+  double floors = 0.0;             ///< of the weakest planted effect or fault
 };
 
 struct FaultJudgement {

@@ -8,13 +8,13 @@
 #include <sstream>
 
 #include "apps/program.hpp"
-#include "blind_plants/promise.hpp"
 #include "campaign.hpp"
 #include "campaign_report.hpp"
 #include "fault_examination.hpp"
 #include "forms_table.hpp"
 #include "io/whole_file.hpp"
 #include "prepared_plant.hpp"
+#include "promise.hpp"
 #include "work/parallel.hpp"
 
 namespace {
@@ -89,7 +89,7 @@ int run(const Arguments& arguments) {
   campaign.each = [](const nlohmann::json& result) {
     const literature::Judgement j = literature::judge(result);
     std::cout << fmt::format("{:3} {:7} planted {}; said {}: {} ({:.1f} s)\n", j.score.seed, j.score.kind,
-                             j.score.planted.empty() ? "nothing" : j.score.planted, j.score.said,
+                             j.planted.empty() ? "nothing" : j.planted, j.said,
                              !j.counts ? "weak"
                              : j.right ? "right"
                                        : "wrong",
@@ -109,7 +109,8 @@ bool likely(const literature::CampaignReport& report, const std::string& demand)
     throw std::invalid_argument(fmt::format("--likely '{}'; expected NAME >= SHARE or NAME <= SHARE", demand));
   }
   const literature::Rate& rate = literature::rate(report, demand.substr(0, at));
-  const hidden::Promise promise{rate.what, demand[at + 1] == '>', std::stod(demand.substr(at + 4)), rate.kept, rate.of};
+  const literature::Promise promise{rate.what, demand[at + 1] == '>', std::stod(demand.substr(at + 4)), rate.kept,
+                                    rate.of};
   if (rate.of > 0 && promise.is_likely()) return true;
   std::cerr << fmt::format("{}: {} of {}; {} {} is unlikely\n", rate.what, rate.kept, rate.of,
                            promise.at_least ? "at least" : "at most", promise.promised);

@@ -1,4 +1,4 @@
-// The second family's own physics, against what is known in closed form.
+// The plants' own physics, against what is known in closed form.
 #include "mechanics.hpp"
 
 #include <gtest/gtest.h>
@@ -168,6 +168,45 @@ TEST(Mechanics, GearFrictionFollowsWhatItIsToFollow) {
   EXPECT_NEAR(speed_after(LoadForm::kPowerFlow), 0.1 / (0.01 + 0.05 * 1.3), 1e-6);
 }
 
+// The load's torque less two fifths turns the rotor: J_l a = -2 sin q - T, J_m a = 0.6 T.
+TEST(Mechanics, BackdrivesOnlyAgainstWhatTheGearHolds) {
+  Machine m = pendulum();
+  m.friction = {.load_form = LoadForm::kPowerFlow, .load_driving = 0.1, .load_backdriving = 0.4};
+  Mechanics mechanics(m);
+  mechanics.reset(1.0);
+  swing(mechanics, 0.01);
+  const double expected_rad_s = -0.01 * 2.0 * std::sin(1.0) / (0.05 + 0.01 / 0.6);
+  EXPECT_NEAR(mechanics.load_rad_s(), expected_rad_s, 1e-3 * std::abs(expected_rad_s));
+}
+
+TEST(Mechanics, BacklashIsAsWideAsPlanted) {
+  Machine m = pendulum();
+  m.body.load_gravity_Nm = 0.0;
+  m.transmission = {.stiffness_Nm_per_rad = 1e4, .damping_Nm_s_per_rad = 2.0, .backlash_rad = 0.04};
+  m.friction.viscous_Nm_s_per_rad = 0.1;
+  Mechanics mechanics(m);
+  swing(mechanics, 3.0, forces(0.05, 0.0));  // pushed on one flank
+  const double ahead_rad = mechanics.motor_rad() - mechanics.load_rad();
+  swing(mechanics, 6.0, forces(-0.05, 0.0));  // and on the other
+  const double behind_rad = mechanics.motor_rad() - mechanics.load_rad();
+  EXPECT_NEAR(ahead_rad - behind_rad, 0.04, 2e-5);  // the flanks give 0.05 Nm / 1e4 Nm/rad each
+}
+
+TEST(Mechanics, BristlesBeginAtNothingAndEndUpAtCoulombsLevel) {
+  for (const DryForm form : {DryForm::kDahl, DryForm::kLuGre}) {
+    Machine m = pendulum();
+    m.body.load_gravity_Nm = 0.0;
+    m.friction = {.dry = form, .coulomb_Nm = 0.4, .bristle_rad = 0.1};
+    Mechanics mechanics(m);
+    swing(mechanics, 0.02, forces(1.0, 0.0));
+    EXPECT_GT(mechanics.load_rad_s(), 0.9 * 0.02 * 1.0 / 0.06);  // hardly any friction yet
+    swing(mechanics, 0.5, forces(1.0, 0.0));
+    const double before_rad_s = mechanics.load_rad_s();
+    swing(mechanics, 0.1, forces(1.0, 0.0));
+    EXPECT_NEAR(mechanics.load_rad_s() - before_rad_s, 0.1 * (1.0 - 0.4) / 0.06, 1e-6);
+  }
+}
+
 TEST(Mechanics, ALooseMassCreepsOutwardsAndMakesTheJointHeavier) {
   Machine m = pendulum();
   m.screw = {.most_share = 0.4, .holds_m_s2 = 9.9, .creep_s = 0.05, .length_m = 0.25};
@@ -221,6 +260,34 @@ TEST(Joint, AnIntegralTermTakesTheSagAwayAndDoesntWindUp) {
   joint.tell(down);
   joint.advance(1.5);
   EXPECT_NEAR(joint.reading_rad(), 0.0, 5e-2);
+}
+
+TEST(Joint, ARateLimitTurnsAStepIntoARamp) {
+  Machine m = pendulum();
+  m.body.load_gravity_Nm = 0.0;
+  m.command.rate_limit_rad_s = 2.0;
+  Joint joint(m);
+  const Command step{.q_rad = 1.5, .kp = 2000.0, .kd = 22.0};
+  joint.reset(0.0, {.q_rad = 0.0, .kp = 2000.0, .kd = 22.0});
+  joint.tell(step);
+  joint.advance(0.4);
+  const double lag_rad = 22.0 / 2000.0 * 2.0;  // a PD without commanded speed trails a ramp by kd/kp
+  EXPECT_NEAR(joint.reading_rad(), 0.8 - lag_rad, 2e-3);
+  joint.advance(1.0);
+  EXPECT_NEAR(joint.reading_rad(), 1.5, 1e-4);
+}
+
+TEST(Joint, WarmFrictionIsLess) {
+  Machine m = pendulum();
+  m.body.load_gravity_Nm = 0.0;
+  m.friction.coulomb_Nm = 0.5;
+  m.thermal.friction_per_K = -0.02;
+  m.drive.law = Law::kTorque;
+  Joint joint(m);
+  joint.reset(0.0, {}, kReference_C + 30.0);
+  joint.tell({.feed_forward = 1.0});
+  joint.advance(0.1);
+  EXPECT_NEAR(joint.mechanics().load_rad_s(), 0.1 * (1.0 - 0.5 * std::exp(-0.6)) / 0.06, 1e-6);
 }
 
 TEST(Joint, ServosMeetTheirBackEmfAndTheirSource) {

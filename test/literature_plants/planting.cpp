@@ -10,8 +10,6 @@ namespace pmg::literature {
 
 namespace {
 
-using hidden::Draw;
-
 /// Of twenty seeds of one parity in a row.
 constexpr std::uint64_t kBlock = 20, kAttempts = 50;
 struct Share {
@@ -56,7 +54,7 @@ bool go_together(const Form& a, const Form& b) {
 
 std::vector<Form> forms_of(const Turn& turn, std::uint64_t seed, Draw& draw) {
   const std::vector<Form> all = catalogue_forms();
-  if (turn.stratum == Stratum::kSingle) return {all[in_turn(all.size(), turn.count, seed, 1)]};
+  if (turn.stratum == Stratum::kSingle) return {form_of_single(turn.count, seed % 2)};
   if (turn.stratum == Stratum::kStrange) {
     const std::vector<Form> strange = strange_forms();
     return {strange[in_turn(strange.size(), turn.count, seed, 2)]};
@@ -143,6 +141,11 @@ std::vector<std::string> same_here(const Form& form, const Machine& m) {
 }
 
 Stratum stratum_of(std::uint64_t seed) { return turn_of(seed).stratum; }
+
+Form form_of_single(std::uint64_t count, std::uint64_t parity) {
+  const std::vector<Form> all = catalogue_forms();
+  return all[in_turn(all.size(), count, parity, 1)];
+}
 
 LiteraturePlant plant_of(std::uint64_t seed) {
   const Turn turn = turn_of(seed);

@@ -32,7 +32,7 @@ struct Form {
   const char* source;  ///< author and year
   RigNeeds needs;
   /// Draws a strength and puts the effect into the machine. Returns the numbers that mean the same in motor.yaml.
-  std::vector<PlantedParameter> (*plant)(hidden::Draw&, const Rig&, Machine&);
+  std::vector<PlantedParameter> (*plant)(Draw&, const Rig&, Machine&);
   /// Effects that describe a part of the form: they may be named beside it.
   std::vector<std::string> besides = {};
 };
@@ -64,6 +64,9 @@ struct LiteraturePlant {
 /// Seeds 2i and 2i + 1 have the same stratum. Of twenty even (or odd) seeds in a row four have one effect each for the
 /// catalogue's forms in turn, and so on: see kStrata in planting.cpp.
 Stratum stratum_of(std::uint64_t seed);
+
+/// The form of the count-th plant with one effect, among even seeds or (1) among odd ones.
+Form form_of_single(std::uint64_t count, std::uint64_t parity);
 
 /// The same seed gives the same plant. A bench that doesn't follow its commands at all, which nobody would record, is
 /// drawn again.

@@ -78,7 +78,7 @@ Shown shown(const Form& form, const std::vector<Form>& siblings, std::uint64_t s
     if (sibling.effect != std::string(form.effect) || sibling.form == std::string(form.form)) continue;
     if (!fits(sibling, plant.rig)) continue;
     Machine other = plant.rig.healthy;
-    hidden::Draw draw(seed, 1);
+    Draw draw(seed, 1);
     sibling.plant(draw, plant.rig, other);
     s.from_siblings = std::min(s.from_siblings, apart_rad(plant, plant.machine, other) / floor_rad);
   }
@@ -155,6 +155,20 @@ TEST(LiteraturePlants, EvenAndOddSeedsHaveTheSameStrata) {
   EXPECT_EQ(even[Stratum::kStrange], 45);
 }
 
+TEST(LiteraturePlants, EveryFormHasItsTurnAsTheOnlyEffect) {
+  const std::size_t size = catalogue_forms().size();
+  for (const std::uint64_t parity : {0ULL, 1ULL}) {
+    for (std::uint64_t turn = 0; turn < 3; ++turn) {
+      std::set<std::pair<std::string, std::string>> in_turn;
+      for (std::uint64_t k = 0; k < size; ++k) {
+        const Form form = form_of_single(turn * size + k, parity);
+        in_turn.emplace(form.effect, form.form);
+      }
+      EXPECT_EQ(in_turn.size(), size) << turn;
+    }
+  }
+}
+
 TEST(LiteraturePlants, WarmBenchesAreAsOftenWithoutConsequence) {
   int warm_and_drifting = 0, warm_only = 0;
   for (std::uint64_t seed = 0; seed < 240; seed += 2) {
@@ -192,7 +206,7 @@ std::vector<FiledRun> files_of(const Rig& rig, std::uint64_t seed) {
 
 TEST(DataFaults, ChangeNothingButWhatTheySay) {
   for (std::size_t kind = 0; kind < std::size(kFaultKinds); ++kind) {
-    hidden::Draw draw(6, kind);
+    Draw draw(6, kind);
     Rig rig = draw_rig(draw, needs_of_fault(kind));
     const DataFault fault = draw_fault(draw, kind, rig);
     const std::vector<FiledRun> before = files_of(rig, 6);
@@ -211,7 +225,7 @@ TEST(DataFaults, ChangeNothingButWhatTheySay) {
 }
 
 TEST(DataFaults, AColumnComesLaterByItsShift) {
-  hidden::Draw draw(8, 1);
+  Draw draw(8, 1);
   Rig rig = draw_rig(draw, {});
   const std::vector<FiledRun> before = files_of(rig, 8);
   std::vector<FiledRun> after = before;

@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "bench_files.hpp"
-#include "blind_plants/calibration.hpp"
-#include "blind_plants/files.hpp"
+#include "calibration.hpp"
+#include "files.hpp"
 #include "files/config_error.hpp"
 #include "sim/motor_file.hpp"
 
@@ -44,7 +44,7 @@ model::ActuatorParameters nominal_model(const Rig& rig) {
 }
 
 /// What a calibration of such a joint fits.
-std::vector<hidden::CalibratedParameter> sought(const Rig& rig, const model::ActuatorParameters& nominal) {
+std::vector<CalibratedParameter> sought(const Rig& rig, const model::ActuatorParameters& nominal) {
   const Law law = rig.healthy.drive.law;
   std::vector<std::string> names = {"transmission.armature_kg_m2", "friction.coulomb_Nm"};
   if (law == Law::kServo || law == Law::kCascade) names.emplace_back("drive.torque_per_unit_Nm");
@@ -57,7 +57,7 @@ std::vector<hidden::CalibratedParameter> sought(const Rig& rig, const model::Act
   if (nominal.friction.load_driving > 0.0) {
     names.insert(names.end(), {"friction.load_driving", "friction.load_backdriving"});
   }
-  std::vector<hidden::CalibratedParameter> found;
+  std::vector<CalibratedParameter> found;
   for (const std::string& name : names) found.push_back({name, model::actuator_parameter(name).value(nominal)});
   if (law != Law::kCascade) found.push_back({"command.delay_s", 2e-3});
   found.push_back({"friction.presliding_rad", 5e-4});
@@ -93,9 +93,9 @@ double fault_moves_floors(const DataFault& fault, const model::ActuatorParameter
   std::vector<std::string> files;
   for (const std::size_t run : fault.runs) files.push_back(file_of(run));
   const std::string filter = fmt::format("file in {}", fmt::join(files, ","));
-  const double before_rad = hidden::rollout_error_rad(base, sound, filter);
+  const double before_rad = rollout_error_rad(base, sound, filter);
   try {
-    return (hidden::rollout_error_rad(base, spoiled, filter) - before_rad) / floor_rad;
+    return (rollout_error_rad(base, spoiled, filter) - before_rad) / floor_rad;
   } catch (const files::ConfigError&) {
     return kUnreadable_floors;
   }
@@ -154,7 +154,7 @@ PreparedPlant prepare(std::uint64_t seed, const std::filesystem::path& folder) {
   write_bench(healthy, plant, plant.rig.healthy, kCalibrationTake, false);
   write_bench(prepared.bench, plant, plant.machine, 0, true);
   const model::ActuatorParameters nominal = nominal_model(plant.rig);
-  prepared.base = hidden::calibrated(nominal, sought(plant.rig, nominal), healthy, kIterations);
+  prepared.base = calibrated(nominal, sought(plant.rig, nominal), healthy, kIterations);
 
   const double floor_rad = noise_floor_rad(plant);
   nlohmann::json effects = nlohmann::json::array(), faults = nlohmann::json::array();
@@ -170,14 +170,13 @@ PreparedPlant prepare(std::uint64_t seed, const std::filesystem::path& folder) {
                     {"effects", effects},
                     {"faults", faults},
                     {"noise_floor_rad", floor_rad},
-                    {"healthy_error_rad", hidden::rollout_error_rad(prepared.base, healthy, hidden::kScoreFilter)},
+                    {"healthy_error_rad", rollout_error_rad(prepared.base, healthy, kScoreFilter)},
                     {"warms_K", plant.rig.warms_K},
                     {"records_temperature", plant.rig.records_temperature}};
   std::filesystem::remove_all(healthy);
   std::filesystem::remove_all(sound);
-  hidden::write_text(folder / "base.yaml",
-                     sim::motor_yaml({{"bench", prepared.base}}, {"the healthy joint, calibrated"}));
-  hidden::write_text(folder / "truth.json", prepared.truth.dump(2) + "\n");
+  write_text(folder / "base.yaml", sim::motor_yaml({{"bench", prepared.base}}, {"the healthy joint, calibrated"}));
+  write_text(folder / "truth.json", prepared.truth.dump(2) + "\n");
   return prepared;
 }
 

@@ -11,8 +11,6 @@ namespace pmg::literature {
 
 namespace {
 
-using hidden::Draw;
-
 constexpr double kPushStep_s = 1e-3;
 constexpr double kMostDropouts = 0.01;  // of the samples
 constexpr double kDropout_rad = 0.7;    // no joint moves by that within a sample
@@ -78,16 +76,20 @@ Machine machine_of_run(const Machine& machine, const Rig& rig, std::size_t index
   m.screw.length_m = load.length_m;
   const double homing = draw.normal(), grease = draw.normal();
   m.sensor.offset_rad += m.sensor.offset_spread_rad * homing;
-  if (static_cast<double>(index) >= m.sensor.slip_at * static_cast<double>(rig.runs.size())) {
+  if (static_cast<double>(index) >= m.sensor.slip_at * rig.session_runs()) {
     m.sensor.offset_rad += m.sensor.slip_rad;
   }
   m.friction.coulomb_Nm *= std::max(0.1, 1.0 + m.friction.coulomb_spread * grease);
   return m;
 }
 
+/// How much of the session is over before the run: all of it before one that was asked for.
+double share_of_session(const Rig& rig, std::size_t index) {
+  return std::min(1.0, static_cast<double>(index) / rig.session_runs());
+}
+
 double temperature_C(const Rig& rig, std::size_t index) {
-  const double share = static_cast<double>(index) / static_cast<double>(rig.runs.size());
-  return kReference_C + rig.warms_K * (1.0 - std::exp(-3.0 * share));
+  return kReference_C + rig.warms_K * (1.0 - std::exp(-3.0 * share_of_session(rig, index)));
 }
 
 Recording commands(const Rig& rig, const Trajectory& t, const Load& load, double bus_V, Draw& draw) {
@@ -132,10 +134,9 @@ Recording record(const Machine& machine, const Rig& rig, std::uint64_t seed, std
   const auto drawn = [&](std::uint64_t what) { return Draw(seed, stream + what); };
   const RunDesign& design = rig.runs.at(index);
   const Gains& gains = rig.gains[design.gains];
-  const double share = static_cast<double>(index) / static_cast<double>(rig.runs.size());
   Draw times = drawn(0), start = drawn(1);
   Recording r = commands(rig, rig.trajectories[design.trajectory], rig.loads[design.load],
-                         rig.bus_V * (1.0 - rig.bus_fall * share), times);
+                         rig.bus_V * (1.0 - rig.bus_fall * share_of_session(rig, index)), times);
   Joint joint(machine_of_run(machine, rig, index, drawn(2)), seed * 1009 + stream);
   joint.reset(rig.noise.start_rad * start.normal(), command_at(rig, r, gains, 0), temperature_C(rig, index));
   WanderingPush push(rig.noise, drawn(3));

@@ -8,8 +8,6 @@ namespace pmg::literature {
 
 namespace {
 
-using hidden::Draw;
-
 constexpr double kUsual_rad_s2 = 20.0;  // acceleration of a load that nothing weighs down
 
 /// A disc on an arm: more inertia than a point mass.
@@ -157,6 +155,10 @@ void draw_temperature(Draw& draw, Rig& rig, const RigNeeds& needs) {
 }  // namespace
 
 double Rig::scale_Nm() const { return horizontal ? kUsual_rad_s2 * scale_inertia_kg_m2() : loads.front().gravity_Nm; }
+
+double Rig::session_runs() const {
+  return static_cast<double>(std::count_if(runs.begin(), runs.end(), [](const RunDesign& r) { return !r.asked_for; }));
+}
 
 RigNeeds both(const RigNeeds& a, const RigNeeds& b) {
   return {a.laws & b.laws, a.weight || b.weight, a.two_loads || b.two_loads, a.warm || b.warm};

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "blind_plants/randomness.hpp"
 #include "machine.hpp"
+#include "randomness.hpp"
 
 namespace pmg::literature {
 
@@ -28,6 +28,7 @@ struct RunDesign {
   std::size_t gains = 0, load = 0, trajectory = 0;
   int repeat = 0;
   bool scored = false;
+  bool asked_for = false;  ///< by a diagnosis, and recorded after the session
 };
 
 enum class NoiseForm { kWhite, kLaplace, kHum, kWander };
@@ -59,6 +60,8 @@ struct Rig {
   double warms_K = 0.0;                                ///< over the session
   /// What the load weighs, or what it takes to turn it without weight: strengths are shares of this.
   double scale_Nm() const;
+  /// Runs of the session: those of the design.
+  double session_runs() const;
   double scale_inertia_kg_m2() const { return loads.front().inertia_kg_m2 + healthy.body.rotor_inertia_kg_m2; }
 };
 
@@ -72,11 +75,14 @@ inline constexpr unsigned kPd = 1, kServoLaw = 2, kCascadeLaw = 4, kTorqueLaw = 
 /// The needs of both.
 RigNeeds both(const RigNeeds& a, const RigNeeds& b);
 
-Rig draw_rig(hidden::Draw& draw, const RigNeeds& needs);
+Rig draw_rig(Draw& draw, const RigNeeds& needs);
 
 /// Steps, minimum-jerk moves, sines, sweeps, strokes and creeping strokes, by their number.
-Trajectory draw_trajectory(hidden::Draw& draw, std::size_t kind, double rate_hz, bool smooth);
+Trajectory draw_trajectory(Draw& draw, std::size_t kind, double rate_hz, bool smooth);
 inline constexpr std::size_t kTrajectoryKinds = 6;
+
+/// Speeds and accelerations of its angles.
+void differentiate(Trajectory& trajectory, double rate_hz);
 
 /// What the rig feeds forward over a trajectory with that load, in the unit of the drive's output.
 std::vector<double> feed_forward(const Rig& rig, const Trajectory& trajectory, const Load& load);

@@ -8,8 +8,6 @@ namespace pmg::literature {
 
 namespace {
 
-using hidden::Draw;
-
 constexpr double kQuiet_s = 0.3;  // at first the joint hangs
 
 std::size_t samples(double duration_s, double rate_hz) {
@@ -103,6 +101,11 @@ std::vector<double> derivative(const std::vector<double>& q, double rate_hz) {
 
 }  // namespace
 
+void differentiate(Trajectory& trajectory, double rate_hz) {
+  trajectory.dq_rad_s = derivative(trajectory.q_rad, rate_hz);
+  trajectory.ddq_rad_s2 = derivative(trajectory.dq_rad_s, rate_hz);
+}
+
 Trajectory draw_trajectory(Draw& draw, std::size_t kind, double rate_hz, bool smooth) {
   const double reach_rad = draw.uniform(0.7, 1.2);
   const std::size_t until = samples(draw.uniform(4.0, 6.0), rate_hz);
@@ -133,8 +136,7 @@ Trajectory draw_trajectory(Draw& draw, std::size_t kind, double rate_hz, bool sm
   }
   if (kind <= 1 && draw.chance(0.4)) t.released_s = draw.uniform(0.6, 1.2);
   if (smooth) smooth_out(rate_hz, t.q_rad);
-  t.dq_rad_s = derivative(t.q_rad, rate_hz);
-  t.ddq_rad_s2 = derivative(t.dq_rad_s, rate_hz);
+  differentiate(t, rate_hz);
   return t;
 }
 

@@ -128,7 +128,8 @@ TEST_F(OperatorTest, AControllerThatNeverAnswersIsSaidInTime) {
   EXPECT_NEAR(elapsed_s_, 10.0, 0.02);
   EXPECT_EQ(answers_[0].text, "not acknowledged");
   EXPECT_EQ(ask(Goal::kDamping, "nobody"), Progress::kFailed);
-  EXPECT_THAT(answers_[0].text, HasSubstr("no controller of this name answers on memq://"));
+  EXPECT_THAT(answers_[0].text, HasSubstr("no controller of this name answers on memq://; heard: "))
+      << "one of those may be meant";
 }
 
 TEST_F(OperatorTest, ARepeatedWishForLimpDrivesIsStillOneWish) {

@@ -216,7 +216,8 @@ TEST_F(ChartCanvas, WordsOfNarrowStretchesAndCloseMarksStayReadable) {
   page.lanes({.title = "steps",
               .lanes = {{"step",
                          {{0.0, 60.0, "stand for a while", colour::kSky},
-                          {60.0, 65.0, "7 walk forward slowly", colour::kGrey}}}},
+                          {60.0, 65.0, "7 walk forward slowly", colour::kGrey},
+                          {65.0, 68.0, "8 stop", colour::kSky}}}},
               .marks = {{30.0, "first fault"}, {30.5, "second fault"}}});
   const nlohmann::json drawn = drawn_charts(page, browser_);
   std::vector<std::string> words;
@@ -227,8 +228,45 @@ TEST_F(ChartCanvas, WordsOfNarrowStretchesAndCloseMarksStayReadable) {
   }
   EXPECT_THAT(words, testing::Contains("stand for a while"));
   EXPECT_THAT(words, testing::Contains(testing::AllOf(testing::StartsWith("7 w"), testing::EndsWith("…"))));
+  EXPECT_THAT(words, testing::Contains("8")) << "a number, and no letter of a word behind it";
   ASSERT_EQ(marks.size(), 2U);
   EXPECT_GT(std::abs(marks[0].second - marks[1].second), 12.0 * kPixel) << "one word over the other";
+}
+
+TEST_F(ChartCanvas, AValueFarBeyondIsToldAndFlattensNothing) {
+  std::vector<double> x, asked, measured;
+  for (int i = 0; i < 200; ++i) {
+    x.push_back(i);
+    asked.push_back(i == 100 ? 50.0 : i == 150 ? -40.0 : 0.8);
+    measured.push_back(0.4 + 0.002 * i);
+  }
+  Page page("beyond");
+  const Line bounded{.name = "asked", .x = x, .y = asked, .colour = "#1b1f24", .widens_from = -0.5, .widens_to = 1.2};
+  page.chart({.title = "bounded", .lines = {bounded, {.name = "measured", .x = x, .y = measured}}});
+  page.chart({.title = "not",
+              .lines = {{.name = "asked", .x = x, .y = asked, .colour = "#1b1f24"},
+                        {.name = "measured", .x = x, .y = measured}}});
+  page.chart({.title = "measured beyond", .lines = {bounded, {.name = "measured", .x = x, .y = asked}}});
+  const nlohmann::json drawn = drawn_charts(page, browser_);
+  const auto height = [&](std::size_t chart) {  // of the measured line, as a share of the canvas
+    double top = 1e9, bottom = 0.0;
+    for (const auto& pixels : drawn[chart]["columns"]) {
+      if (pixels.is_null()) continue;
+      top = std::min(top, pixels[0].get<double>());
+      bottom = std::max(bottom, pixels[1].get<double>());
+    }
+    return (bottom - top) / drawn[chart]["height"].get<double>();
+  };
+  const auto words = [&](std::size_t chart) {
+    std::vector<std::string> found;
+    for (const auto& word : drawn[chart]["words"]) found.push_back(word["text"]);
+    return found;
+  };
+  EXPECT_GT(height(0), 0.15) << "of 1.7 m/s it goes through 0.4";
+  EXPECT_LT(height(1), 0.05);
+  EXPECT_THAT(words(0), testing::IsSupersetOf({"asked 50 ↑", "asked -40 ↓"}));
+  EXPECT_THAT(words(1), testing::Not(testing::Contains(testing::EndsWith("↑")))) << "it is in the picture";
+  EXPECT_GT(height(2), 0.5) << "a line without a bound is always in the picture whole";
 }
 
 /// Presses every button, and finds what it would save: name and text, for an SVG also what an XML reader makes of it.

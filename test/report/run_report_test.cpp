@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "report/run_figures.hpp"
@@ -36,7 +38,7 @@ TEST_F(RunReport, ShowsEverySection) {
         "Slip of the left foot", "Tracking error, RMS", "left_joint, position [rad]", "right_joint, torque [Nm]",
         "Joints whose target was limited", "Temperatures", "2 walk forward", "The 3 steps of scenario small",
         "speed in 10 ticks", "Mean absolute errors over 3.0 s", "Whole tick", "bundle 0123456789ab",
-        "1 cycles woke more than 2 ms late"}) {
+        "1 cycle woke more than 2 ms late"}) {
     EXPECT_THAT(html, HasSubstr(text));
   }
 }
@@ -61,6 +63,80 @@ TEST_F(RunReport, LaysRobotsOfOtherJointsOverEachOther) {
   const std::string html = run_report({run({}), run({.joints = {"right_joint", "third", "fourth"}}, "b.lcm")}).html();
   for (const char* joint : {"left_joint, position", "right_joint, position", "fourth, torque"})
     EXPECT_THAT(html, HasSubstr(joint));
+}
+
+/// Where these texts begin in the page, which has each of them.
+std::vector<std::size_t> places(const std::string& html, const std::vector<std::string>& texts) {
+  std::vector<std::size_t> found;
+  for (const std::string& text : texts) {
+    found.push_back(html.find(text));
+    EXPECT_NE(found.back(), std::string::npos) << text;
+  }
+  return found;
+}
+
+TEST_F(RunReport, WhatHappenedStandsInOrderOfTime) {
+  RunSeries one = run({.fault_at = 200}), other = run({}, "b.lcm");
+  one.guard_trips = {{0.75, "the guard acted"}};
+  one.stops = {{2.5, "somebody stopped it"}, {0.25, "stopped early"}};
+  other.stops = {{1.5, "the other was stopped"}};
+  const std::vector<std::size_t> at =
+      places(run_report({one, other}).html(), {"<td>0.25 A</td><td>stopped early", "<td>0.75 A</td><td>the guard acted",
+                                               "<td>1.50 B</td><td>the other was stopped", "<td>2.00 A</td><td>tilt",
+                                               "<td>2.50 A</td><td>somebody stopped it"});
+  EXPECT_TRUE(std::ranges::is_sorted(at));
+}
+
+TEST_F(RunReport, NamesTheStepsWhoseNumbersTheTimelineShows) {
+  const std::string html = run_report({run({}), run({}, "b.lcm")}).html();
+  const std::string names = "<p>Steps A: 1\u00a0stand, 2\u00a0walk forward, 3\u00a0walk forward.</p>";
+  EXPECT_THAT(html, HasSubstr(names));
+  EXPECT_THAT(html, Not(HasSubstr("Steps B"))) << "the same steps are told once";
+}
+
+/// The drawings of the page's charts, by title.
+std::map<std::string, nlohmann::json> charts(const std::string& html) {
+  std::map<std::string, nlohmann::json> found;
+  const std::string open = "<script type=\"application/json\">";
+  for (std::size_t at = html.find(open); at != std::string::npos; at = html.find(open, at + 1)) {
+    const std::size_t begin = at + open.size(), title = html.rfind("<h3>", at) + 4;
+    found[html.substr(title, html.find("</h3>", title) - title)] =
+        nlohmann::json::parse(html.substr(begin, html.find("</script>", begin) - begin));
+  }
+  return found;
+}
+
+TEST_F(RunReport, ALimitHasOneColourInEveryPicture) {
+  const auto drawn = charts(run_report({run({})}).html());
+  const nlohmann::json& lanes =
+      drawn.at("Joints whose target was limited: by range (blue), speed (orange), torque (red)");
+  const nlohmann::json& counts = drawn.at("How many joints&#39; targets were limited, and by what");
+  EXPECT_EQ(lanes["lanes"][0]["stretches"][0][3], pages::colour::kOrange) << "speed";
+  for (const auto& [name, colour] :
+       {std::pair{"range", pages::colour::kSky}, std::pair{"speed", pages::colour::kOrange},
+        std::pair{"torque", pages::colour::kVermillion}}) {
+    const auto line = std::ranges::find(counts["lines"], name, [](const auto& one) { return one["name"]; });
+    ASSERT_NE(line, counts["lines"].end()) << name;
+    EXPECT_EQ((*line)["colour"], colour) << name;
+  }
+}
+
+TEST_F(RunReport, AMistypedCommandDoesNotFlattenWhatTheRobotDid) {
+  RunSeries typed = run({});
+  typed.reference.user[kVx].at(150) = 50.0;
+  const auto lines = [](const RunSeries& series) {
+    return charts(run_report({series}).html()).at("Forward velocity vx [m/s]")["lines"];
+  };
+  EXPECT_FALSE(lines(typed)[0].contains("widens")) << "this log doesn't say what the robot takes";
+  typed.info.options = R"({"command": {"lower": {"vx_m_s": -0.5, "vy_m_s": -1, "omega_rad_s": -1, "pitch_rad": -1,
+    "roll_rad": -1, "height_m": -1}, "upper": {"vx_m_s": 0.8, "vy_m_s": 1, "omega_rad_s": 1, "pitch_rad": 1,
+    "roll_rad": 1, "height_m": 1}}})";
+  for (const nlohmann::json& line : lines(typed)) {
+    EXPECT_EQ(line.contains("widens"), line["name"] == "asked") << line["name"];
+    if (!line.contains("widens")) continue;
+    EXPECT_NEAR(line["widens"][0].get<double>(), -0.75, 1e-9);
+    EXPECT_NEAR(line["widens"][1].get<double>(), 1.2, 1e-9) << "half as much again as the robot takes is seen";
+  }
 }
 
 TEST_F(RunReport, MissingChannelsAreNoError) {

@@ -13,6 +13,7 @@ USED = (
     ".clang-format",
     "ruff.toml",
     "scripts/format",
+    "scripts/help.bash",
     "third_party/pinned_folder.bash",
     "third_party/python-packages",
     "third_party/python/tools.txt",

@@ -207,6 +207,28 @@ constexpr std::array kMishaps = {
              });
              EXPECT_EQ(driven.result().fault.code, faults::FaultCode::kTemperature);
            }},
+    Mishap{"SensorWithoutANumber",
+           [](Driven& driven) {
+             spoil_for(driven, 0.1, [](model::RobotState& state) {
+               state.q[3] = std::nan("");
+               return hal::BusStatus::kOk;
+             });
+             EXPECT_EQ(driven.result().fault.code, faults::FaultCode::kStateNotFinite);
+           }},
+    Mishap{"JointTooFast",
+           [](Driven& driven) {
+             driven.hold("w", 2.0);
+             spoil_for(driven, 0.2, [](model::RobotState& state) {
+               state.dq[3] = 100.0;
+               return hal::BusStatus::kOk;
+             });
+             EXPECT_EQ(driven.result().fault.code, faults::FaultCode::kJointVelocity);
+           }},
+    Mishap{"BusLostAsItStands",
+           [](Driven& driven) {
+             spoil_for(driven, 0.1, [](model::RobotState&) { return hal::BusStatus::kLost; });
+             EXPECT_EQ(driven.result().fault.code, faults::FaultCode::kBusLost);
+           }},
     Mishap{"BusLostInTheAir",
            [](Driven& driven) {
              driven.press("h");

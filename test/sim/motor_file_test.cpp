@@ -83,6 +83,27 @@ model::RobotState after(World& world, const model::JointCommand& command, int st
   return state;
 }
 
+TEST_F(MotorFile, WhatIsAnotherFileIsToldWhichOneIsExpected) {
+  const auto refused = [](const fs::path& file) -> std::string {
+    try {
+      read_motor_file(file);
+    } catch (const files::ConfigError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  const std::string robot = refused("config/robots/z1/robot.yaml");
+  EXPECT_THAT(robot, AllOf(HasSubstr("is of a robot; expected a motor.yaml, as pmg_calibrate_motor"), HasSubstr(":")));
+  write("{\"parameters\": 3}\n");
+  EXPECT_THAT(refusal(), HasSubstr("joints: is missing; expected a motor.yaml, as pmg_calibrate_motor"));
+  const fs::path folder = file_.string() + "_results";
+  fs::create_directories(folder);
+  EXPECT_THAT(refused(folder), HasSubstr("is a folder"));
+  std::ofstream(folder / "motor.yaml") << "joints: {}\n";
+  EXPECT_EQ(refused(folder), folder.string() + ": is a folder; did you mean " + (folder / "motor.yaml").string() + "?");
+  fs::remove_all(folder);
+}
+
 TEST_F(MotorFile, IsTheOneThatIsNamedOrElseTheRobots) {
   write("joints: {" + joint_ + ": {friction: {coulomb_Nm: 0.7}}}\n");
   EXPECT_TRUE(motors_in_force(robot_, "none").empty());

@@ -60,6 +60,22 @@ TEST(Renderer, LaysTextOverTheTopLeftCorner) {
   EXPECT_LT(differing_pixels(plain, with_text, 90, 90), 20U);
 }
 
+TEST(Renderer, TurnsSoftlyToWhereItIsToLookFrom) {
+  sim::World world(z1(), {});
+  sim::Renderer renderer(world.mj_model(), {.width = 320, .height = 180, .azimuth_deg = 180.0});
+  const Rgb front = renderer.render(world.mj_data());
+  renderer.look_from(270.0);
+  world.mj_data()->time += 0.04;
+  const Rgb begun = renderer.render(world.mj_data());
+  world.mj_data()->time += 5.0;
+  const Rgb left = renderer.render(world.mj_data());
+  sim::Renderer from_left(world.mj_model(), {.width = 320, .height = 180, .azimuth_deg = 270.0});
+  const Rgb expected = from_left.render(world.mj_data());
+  EXPECT_LT(differing_pixels(left, expected, 0, 180), 50U) << "it has arrived";
+  EXPECT_GT(differing_pixels(front, begun, 0, 180), 50U) << "it turns";
+  EXPECT_GT(differing_pixels(begun, expected, 0, 180), 50U) << "and doesn't jump";
+}
+
 TEST(VideoWriter, WritesAnMp4) {
   const auto path = std::filesystem::path(testing::TempDir()) / "pmg video 'quoted'.mp4";
   std::filesystem::remove(path);

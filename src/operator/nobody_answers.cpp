@@ -1,0 +1,20 @@
+#include "operator/nobody_answers.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <vector>
+
+#include "io/plain_text.hpp"
+
+namespace pmg::ops {
+
+std::string nobody_answers(const OperatorSource& source) {
+  std::vector<std::string> names;
+  for (const auto& [name, heard] : source.heard())
+    if (heard.status) names.push_back(io::plain_text(name));
+  return fmt::format("no controller of this name answers on {}{}", source.url(),
+                     names.empty() ? "" : fmt::format("; heard: {}", fmt::join(names, ", ")));
+}
+
+}  // namespace pmg::ops
