@@ -8,6 +8,8 @@ namespace pmg::training {
 namespace {
 // A velocity below this share of its range becomes zero: operators do not command a crawl.
 constexpr double kSmallestShare = 0.08;
+constexpr double kSlowShare = 0.2;  // of the draws: velocities of up to kSlowest of their ranges, as of somebody who works at a table
+constexpr double kSlowest = 0.4;
 constexpr double kJumpingShare = 0.04;  // of the draws; with ten jumps each, 5 % of the time
 constexpr std::array<double, kChannels> kChannelShown = {0.7, 0.5, 0.55, 0.45, 0.45, 0.45};
 }  // namespace
@@ -19,7 +21,8 @@ const Command& CommandStream::step(double dt_s) {
 }
 
 double CommandStream::value(std::size_t channel) {
-  const double drawn = kRangeStretch * uniform(limits_.lower[channel], limits_.upper[channel]);
+  const double stretch = slow_ && channel < kVelocityChannels ? kSlowest : kRangeStretch;
+  const double drawn = stretch * uniform(limits_.lower[channel], limits_.upper[channel]);
   const double range = drawn < 0.0 ? -limits_.lower[channel] : limits_.upper[channel];
   return channel < kVelocityChannels && std::abs(drawn) < kSmallestShare * range ? 0.0 : drawn;
 }
@@ -45,6 +48,7 @@ void CommandStream::draw() {
     return;
   }
   left_s_ = uniform(0.0, 1.0) < 0.15 ? uniform(0.4, 1.5) : uniform(2.0, 7.0);
+  slow_ = uniform(0.0, 1.0) < kSlowShare;
   command_ = Command{};
   const double kind = uniform(0.0, 1.0);
   if (kind < 0.06) return;  // stand upright

@@ -30,6 +30,7 @@ class CommandStream {
   Command command_;
   double left_s_ = 0.0;
   int jumps_left_ = 0;
+  bool slow_ = false;
   bool postures_jump_ = false;
 };
 

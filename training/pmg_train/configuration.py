@@ -97,6 +97,7 @@ CONFIG = {
         "initial_std": Number,
         "gradient_norm": Number,
         "hidden": Widths,
+        "mean_iterations": Number,
     },
     "symmetry": {"weight": Number},
     "strictness": {"from_share": Number, "iterations": Range},

@@ -1,7 +1,6 @@
-"""Writes a trained actor as ONNX, with the metadata that a controller checks before it uses the policy. Of several checkpoints of one run it
-writes the mean (averaging.py).
+"""Writes a trained actor as ONNX, with the metadata that a controller checks before it uses the policy.
 
-Example: python3 -m pmg_train.export runs/pmg/actor_3[0-9]*.pt runs/pmg/actor.pt --robot config/robots/z1 --out pmg.onnx
+Example: python3 -m pmg_train.export runs/pmg/actor.pt --robot config/robots/z1 --out pmg.onnx
 Exit codes: 0 done, 2 bad input.
 """
 
@@ -15,7 +14,6 @@ import onnx
 import torch
 from onnx import TensorProto, helper, numpy_helper
 
-from pmg_train.averaging import averaged
 from pmg_train.inputs import clip_library_hash
 from pmg_train.robot import policy_gains
 
@@ -99,8 +97,7 @@ def metadata(checkpoint: dict, robot: Path) -> dict:
         "policy_rate_Hz": round(1 / config["tick_s"]),
         "clip_library_sha256": clip_library_hash(robot),
         "golden_tolerance": GOLDEN_TOLERANCE,
-        "training": {k: checkpoint[k] for k in ("seed", "iteration", "steps", "learned_s", "processes", "inputs")}
-        | ({"averaged_iterations": checkpoint["averaged_iterations"]} if "averaged_iterations" in checkpoint else {}),
+        "training": {k: checkpoint[k] for k in ("seed", "iteration", "steps", "learned_s", "processes", "inputs")},
     }
 
 
@@ -118,13 +115,12 @@ def export(checkpoint: dict, robot: Path, out: Path) -> dict:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("checkpoints", type=Path, nargs="+", metavar="CHECKPOINT")
+    parser.add_argument("checkpoint", type=Path)
     parser.add_argument("--robot", type=Path, required=True)
     parser.add_argument("--out", type=Path, required=True)
     a = parser.parse_args()
     try:
-        checkpoints = [torch.load(path, map_location="cpu", weights_only=False) for path in a.checkpoints]
-        meta = export(averaged(checkpoints), a.robot, a.out)
+        meta = export(torch.load(a.checkpoint, map_location="cpu", weights_only=False), a.robot, a.out)
     except (OSError, KeyError, ValueError) as error:
         print(f"export: {error}", file=sys.stderr)
         return 2

@@ -90,6 +90,7 @@ class Training:
         if dist.is_initialized():
             for tensor in self.network.state_dict().values():
                 dist.broadcast(tensor, 0)
+        self.mean_actor = {k: v.clone() for k, v in self._actor().items()}
         mirrors = observation_mirror(batch.description, self.device), action_mirror(batch.description, self.device)
         self.ppo = Ppo(self.network, ppo, self.device, mirrors, c["symmetry"]["weight"])
         self.rollout = Rollout(ppo["steps"], ppo["worlds"], seen, self.env.critic_observation.shape[1], self.env.actions, self.device)
@@ -238,6 +239,7 @@ class Training:
             first, last = ppo["entropy"]
             info = self.ppo.update(r, first + (last - first) * done)
             self.iteration += 1
+            self._average()
             self.steps += ppo["steps"] * ppo["worlds"] * self.ppo.world_size
             if self.cuda and self.iteration % 10 == 0:
                 torch.cuda.synchronize()
@@ -259,6 +261,16 @@ class Training:
         first, last = ramp["iterations"]
         done = min(1.0, max(0.0, (self.iteration - first) / max(1.0, last - first)))
         return ramp["from_share"] + (1 - ramp["from_share"]) * done
+
+    def _actor(self) -> dict[str, torch.Tensor]:
+        return {k: v for k, v in self.network.state_dict().items() if k.startswith("actor")}
+
+    def _average(self) -> None:
+        """Exponential mean of the actor over about `mean_iterations`; of all iterations so far while they are fewer."""
+        share = 1.0 / min(self.iteration, self.config["ppo"]["mean_iterations"])
+        now = self._actor()
+        for name, mean in self.mean_actor.items():
+            mean.lerp_(now[name], share)
 
     def _any_rank(self, true_here: bool) -> bool:
         """All ranks end and save together."""
@@ -323,8 +335,9 @@ class Training:
         )
 
     def save_actor(self, path: Path) -> None:
-        actor = {k: v.cpu() for k, v in self.network.state_dict().items() if k.startswith("actor")}
-        _write(dict(actor=actor, **self._meta()), path)
+        """`actor` is the policy: the mean. `last_actor` is what it was a mean of last."""
+        cpu = lambda actor: {k: v.cpu() for k, v in actor.items()}
+        _write(dict(actor=cpu(self.mean_actor), last_actor=cpu(self._actor()), **self._meta()), path)
 
     def save(self) -> None:
         """last.pt: networks, optimiser and curve. worlds.pt: the state of each process, for an exact continuation. actor.pt: the policy
@@ -333,7 +346,12 @@ class Training:
             self.save_actor(self.a.out / "actor.pt")
             _write(
                 dict(
-                    network=self.network.state_dict(), optimizer=self.ppo.optimizer.state_dict(), rate=self.ppo.rate, curve=self.curve, **self._meta()
+                    network=self.network.state_dict(),
+                    mean_actor=self.mean_actor,
+                    optimizer=self.ppo.optimizer.state_dict(),
+                    rate=self.ppo.rate,
+                    curve=self.curve,
+                    **self._meta(),
                 ),
                 self.a.out / "last.pt",
             )
@@ -360,6 +378,7 @@ class Training:
         if changed := changed_inputs(state["inputs"], self.inputs):
             raise ValueError(f"{path} was made from another {', '.join(changed)}; start a new run, with --initial if it shall go on from this one")
         self.network.load_state_dict(state["network"])
+        self.mean_actor = state["mean_actor"]
         self.ppo.optimizer.load_state_dict(state["optimizer"])
         self.ppo.rate.copy_(state["rate"])
         if self.cuda:
@@ -385,6 +404,7 @@ class Training:
         """Starts with another run's networks and exploration; steps and curve begin at zero."""
         state = torch.load(path, map_location=self.device, weights_only=False)
         self.network.load_state_dict(state["network"])
+        self.mean_actor = {k: v.clone() for k, v in self._actor().items()}
         low, high = self.config["ppo"]["learning_rate"]
         self.ppo.rate.fill_((low * high) ** 0.5)
 

@@ -57,12 +57,16 @@ def train(out: Path, processes: int, iterations: int, *more: str) -> dict:
 @pytest.mark.parametrize("processes", [1, 2])
 def test_resumed_run_equals_the_uninterrupted_one(tmp_path, processes):
     whole = train(tmp_path / "whole", processes, 2)
-    train(tmp_path / "parts", processes, 1)
+    first = train(tmp_path / "parts", processes, 1)
     parts = train(tmp_path / "parts", processes, 2, "--resume")
     assert parts["iteration"] == 2
     assert parts["steps"] == whole["steps"] == 2 * 24 * 8 * processes
     for name, value in whole["network"].items():
         assert torch.equal(value, parts["network"][name]), name
+    policy = torch.load(tmp_path / "parts" / "actor.pt", weights_only=False)["actor"]
+    for name, mean in whole["mean_actor"].items():
+        assert torch.allclose(mean, (first["network"][name] + whole["network"][name]) / 2), name
+        assert torch.equal(mean, policy[name]), name
     with open(tmp_path / "parts" / "curve.csv") as file:
         assert [int(row["iteration"]) for row in csv.DictReader(file)] == [1, 2]
 
