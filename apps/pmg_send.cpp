@@ -163,7 +163,9 @@ class Session {
       show_progress(robot, drive);
     }
     const bool drove = progress == ops::Progress::kReached;
-    const std::string drove_text = drove ? fmt::format("drove for {:.1f} s", drive.driven_s()) : drive.text();
+    const std::string drove_text =
+        drove ? fmt::format("drove for {:.1f} s{}{}", drive.driven_s(), limited_.empty() ? "" : "; ", limited_)
+              : drive.text();
     if (!lead) return conclude(robot, progress, drove_text, drive.driven_s());
     if (drove && !led) progress = ops::Progress::kFailed;
     return conclude(robot, progress, arms_text.empty() ? drove_text : drove_text + "; " + arms_text, drive.driven_s());

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -18,25 +19,47 @@ constexpr double kNearlyBlind = 1e-2;  // likewise: above it columns don't cance
 constexpr double kOfError = 4.0;       // times E^T E along a direction: twice what doubled steps change
 constexpr double kPart = 0.01;         // of a unit direction: a parameter that belongs to it
 constexpr double kMostOfEdge = 0.25;   // of a range: farther away the derivatives at the point say nothing
+// Times the fit's finite differences of 1e-3 of a range, half a percent of most values. A tenth at most: there a
+// rollout still follows its parameters nearly linearly.
+constexpr std::array kLongerSteps = {5.0, 20.0};
 
 /// The fit's normal equations, and how little its derivatives tell of themselves: with steps twice as long they are J +
 /// E.
 struct Linearised {
   fitting::LinearisedFit fit;
-  Eigen::MatrixXd squares_of_E;  // E^T E
+  Eigen::MatrixXd squares_of_E;                // E^T E
+  std::vector<fitting::LinearisedFit> longer;  // by kLongerSteps
 };
 
 Linearised linearised(const FitProblem& problem, const Eigen::VectorXd& point, unsigned threads) {
-  fitting::Problem squares = problem.least_squares(threads);
+  const fitting::Problem squares = problem.least_squares(threads);
   const fitting::Residuals at = squares.residuals(point);
-  const fitting::Jacobian jacobian = fitting::jacobian(squares, point, at);
-  Linearised found{.fit = {.ranges = squares.coordinates, .coordinates = point}, .squares_of_E = {}};
-  found.fit.blocks = blocks(problem.runs()).normal_equations(at, jacobian);
-  for (auto& coordinate : squares.coordinates) coordinate.step *= 2.0;
-  fitting::Jacobian apart = fitting::jacobian(squares, point, at);
+  const auto with_steps = [&](double factor) {
+    fitting::Problem with = squares;
+    for (auto& coordinate : with.coordinates) coordinate.step *= factor;
+    return fitting::jacobian(with, point, at);
+  };
+  const auto fit_with = [&](const fitting::Jacobian& jacobian) {
+    fitting::LinearisedFit fit{.ranges = squares.coordinates, .coordinates = point};
+    fit.blocks = blocks(problem.runs()).normal_equations(at, jacobian);
+    return fit;
+  };
+  const fitting::Jacobian jacobian = with_steps(1.0);
+  Linearised found{.fit = fit_with(jacobian), .squares_of_E = {}, .longer = {}};
+  fitting::Jacobian apart = with_steps(2.0);
   for (std::size_t run = 0; run < apart.size(); ++run) apart[run] -= jacobian[run];
   found.squares_of_E = fitting::products(apart, apart);
+  for (const double factor : kLongerSteps) found.longer.push_back(fit_with(with_steps(factor)));
   return found;
+}
+
+/// (fit, seen parameters) => (standard deviation of each, in edges of the cube): sqrt(A^-1 B A^-1 + d d^T).
+Eigen::VectorXd deviations(const fitting::LinearisedFit& fit, const std::vector<Eigen::Index>& seen) {
+  const fitting::Covariance covariance = fitting::cluster_robust_covariance(fit, seen);
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(fit.coordinates.size());
+  for (const fitting::NormalEquations& block : fit.blocks) gradient += block.gradient;
+  const Eigen::VectorXd left = covariance.inverse * gradient(seen);
+  return (covariance.robust.diagonal().cwiseMax(0.0) + left.cwiseAbs2()).cwiseSqrt();
 }
 
 using Blind = std::vector<Eigen::Index>;  // parameters that have a part in a blind direction
@@ -74,7 +97,7 @@ double unit_per_edge(const FitProblem& problem, const std::vector<double>& point
 }  // namespace
 
 std::vector<Confidence> confidence(const FitProblem& problem, const std::vector<double>& point, unsigned threads) {
-  const auto [fit, squares_of_E] = linearised(
+  const auto [fit, squares_of_E, longer] = linearised(
       problem, Eigen::Map<const Eigen::VectorXd>(point.data(), static_cast<Eigen::Index>(point.size())), threads);
   const Eigen::MatrixXd information = fitting::information(fit);
   std::vector<Eigen::Index> seen;
@@ -94,15 +117,13 @@ std::vector<Confidence> confidence(const FitProblem& problem, const std::vector<
     }
   }
   const fitting::Covariance covariance = fitting::cluster_robust_covariance(fit, seen);
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(information.rows());
-  for (const fitting::NormalEquations& block : fit.blocks) gradient += block.gradient;
-  const Eigen::VectorXd left = covariance.inverse * gradient(seen);
+  Eigen::VectorXd of_edge = deviations(fit, seen);
+  for (const fitting::LinearisedFit& with : longer) of_edge = of_edge.cwiseMax(deviations(with, seen));
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const auto d = static_cast<std::size_t>(seen[i]);
     const auto row = static_cast<Eigen::Index>(i);
-    const double of_edge = std::hypot(std::sqrt(std::max(0.0, covariance.robust(row, row))), left[row]);
-    if (found[d].told_only_with.empty() && of_edge < kMostOfEdge)
-      found[d].deviation = std::abs(unit_per_edge(problem, point, d)) * of_edge;
+    if (found[d].told_only_with.empty() && of_edge[row] < kMostOfEdge)
+      found[d].deviation = std::abs(unit_per_edge(problem, point, d)) * of_edge[row];
     for (std::size_t j = 0; j < seen.size(); ++j) {
       const auto other = static_cast<Eigen::Index>(j);
       if (j == i) continue;

@@ -23,8 +23,11 @@ struct Confidence {
 /// deviation. E is what finite differences with steps twice as long change: derivatives tell no more. The others have
 ///
 ///   sqrt(A^-1 B A^-1 + d d^T), with fitting::cluster_robust_covariance's A and B,
-/// where d = A^-1 J^T r is the Gauss-Newton step that a finished fit doesn't have left. A deviation beyond a quarter of
-/// the range of the search is none: the derivatives say nothing so far away.
+/// where d = A^-1 J^T r is the Gauss-Newton step that a finished fit doesn't have left, the largest over J by the fit's
+/// finite differences and by those 5 and 20 times as long. Dry friction that sticks in one rollout and slips in the
+/// next moves readings by jumps: short differences take jumps for information, and a search ends in one of the narrow
+/// valleys between them. Differences over many jumps see what lies below. A deviation beyond a quarter of the range of
+/// the search is none: the derivatives say nothing so far away.
 std::vector<Confidence> confidence(const FitProblem& problem, const std::vector<double>& point, unsigned threads);
 
 }  // namespace pmg::calib

@@ -1,9 +1,9 @@
 // The page of the tracking table.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "evaluation/table1.hpp"
 #include "pages/text.hpp"
@@ -16,6 +16,15 @@ constexpr std::array<const char*, 6> kColours = {pages::colour::kBlue,   pages::
                                                  pages::colour::kGreen,  pages::colour::kOrange,
                                                  pages::colour::kPurple, pages::colour::kSky};
 
+/// No bars beside ours: what can't be compared in size must not look as if it could.
+constexpr const char* kAboutThePaper =
+    "The paper's figures are of its own robot in Isaac Gym, and its commands are unknown: larger commands make larger "
+    "errors. So compare the order of the policies, not the sizes.";
+
+bool has_published(const Table1& table) {
+  return std::ranges::any_of(table.cases, [](const Case& one) { return published_errors(one.name).has_value(); });
+}
+
 std::vector<std::string> case_names(const Table1& table) {
   std::vector<std::string> names;
   for (const Case& c : table.cases) names.push_back(c.name);
@@ -26,16 +35,13 @@ std::string titled(std::size_t error) { return fmt::format("{} error [{}]", kErr
 
 pages::Bars overall_bars(const Table1& table, std::size_t error) {
   pages::Bars bars{.title = titled(error), .unit = kErrorUnits[error], .names = case_names(table), .sets = {}};
-  pages::Bars::Set measured{.name = "measured, mean and 95 % interval over seeds", .values = {}},
-      published{.name = "paper", .values = {}, .colour = pages::colour::kGrey};
+  pages::Bars::Set measured{.name = "measured", .values = {}};
   for (std::size_t c = 0; c < table.cases.size(); ++c) {
     const Estimate& estimate = table.summaries[c].errors[error];
     measured.values.push_back(estimate.mean);
     measured.intervals.push_back({estimate.lower, estimate.upper});
-    const auto figures = published_errors(table.cases[c].name);
-    published.values.push_back(figures ? (*figures)[error] : std::numeric_limits<double>::quiet_NaN());
   }
-  bars.sets = {measured, published};
+  bars.sets = {measured};
   const Yardstick& between = table.yardsticks[table.judged];
   bars.marks = {{between.nothing.errors[error], "doing nothing"}, {between.follower.errors[error], "perfect follower"}};
   if (table.gentle()) bars.marks.push_back({kErrorLimits[error], fmt::format("limit {}", kErrorLimits[error])});
@@ -105,7 +111,8 @@ pages::Table errors_table(const Table1& table) {
     figures(name + ", share left", table.shares(c), "");
     if (std::isfinite(summary.errors_beyond_reach[0].mean))
       estimates(name + ", beyond the clips' reach", summary.errors_beyond_reach, "");
-    if (const auto published = published_errors(name)) figures(name + ", paper", *published, "not told");
+    if (const auto published = published_errors(name))
+      figures(name + ", paper (other commands, other robot)", *published, "not told");
   }
   add(
       fmt::format("{}{}, limit", table.cases[table.judged].name, table.gentle() ? "" : ", share left"),
@@ -182,9 +189,11 @@ pages::Page page_of(const Table1& table) {
   pages::Page page("Command tracking: " + table.robot);
   add_verdicts(table, page);
   page.heading("Errors against the user's command");
+  page.paragraph("Means over seeds, with their 95 % intervals.");
   page.columns([&] {
     for (std::size_t e = 0; e < kErrors; ++e) page.bars(overall_bars(table, e));
   });
+  if (has_published(table)) page.paragraph(kAboutThePaper);
   for (const pages::Table& one : tables_of(table)) page.table(one);
   page.heading("Over time, seed 1");
   page.columns([&] {
@@ -204,8 +213,7 @@ pages::Page page_of(const Table1& table) {
       "are Student's, over seeds. Doing nothing is standing upright whatever is asked; a perfect follower does at once "
       "what "
       "ranges and rates let through; both pass through the same averaging. The share left is (error - follower) / "
-      "(nothing - follower). Steps beyond the clips' reach are counted apart, against the user's command. The paper's "
-      "figures are from its own robot in Isaac Gym, and its commands are unknown.",
+      "(nothing - follower). Steps beyond the clips' reach are counted apart, against the user's command.",
       table.seeds, table.scenario.duration_s(), table.scenario_file,
       table.ranges_file.empty() ? "as the model says" : table.ranges_file));
   if (!table.films.empty()) {

@@ -81,6 +81,8 @@ work::Worth worth_of(const RunSeries& run) {
   work::Worth worth;
   worth.add_if(!run.faults.empty(), work::Grade::kMissed, "the robot faulted");
   worth.add_if(run.fell, work::Grade::kMissed, "the robot fell");
+  worth.add_if(run.cut.commands > 0, work::Grade::kPartial,
+               "the command was cut, and the robot did what was admitted: " + sil::cut_text(run.cut));
   worth.add_if(run.modes.empty(), work::Grade::kOpen, "the log doesn't say whether there was a fault");
   worth.add_if(hanging_s(run) > 0.5 * run.duration_s, work::Grade::kOpen, "the feet carried nothing for most of it");
   return worth;
@@ -109,6 +111,8 @@ std::string verdict(const RunSeries& run) {
     text += ", did not fall";
   }
   text += ".";
+  if (run.cut.commands > 0)
+    text += fmt::format(" COMMAND CUT for {:.1f} s: {}.", run.cut.for_s, sil::cut_text(run.cut));
   if (hanging_s(run) > 0.0) {
     text += fmt::format(" For {:.1f} s the feet carried nothing and the policy was not run.", hanging_s(run));
   }
@@ -157,6 +161,7 @@ nlohmann::ordered_json run_json(const RunSeries& run) {
       {"tracking_rms_rad", errors},
       {"tracking", judged ? sil::tracking_json(run.tracking) : ordered_json(nullptr)},
       {"reference_slip", sil::reference_slip_json(run.reference_slip)},
+      {"command_cut", sil::cut_json(run.cut)},
       {"scenario", run.scenario.empty() ? ordered_json(nullptr) : ordered_json(run.scenario)},
       {"steps", steps},
       {"limited_joints", limited},

@@ -28,11 +28,11 @@ double hanging_s(const RunSeries& run);
 /// Of what was read: interrupted, or partial where the log has problems. A page holds as far as its logs were read.
 work::Worth worth_of_reading(const RunSeries& run);
 
-/// Of the run, beside its reading: missed, where the robot fell or faulted; open, where the log doesn't tell, or the
-/// feet carried nothing for most of the time.
+/// Of the run, beside its reading: missed, where the robot fell or faulted; partial, where its command was cut; open,
+/// where the log doesn't tell, or the feet carried nothing for most of the time.
 work::Worth worth_of(const RunSeries& run);
 
-/// One sentence: policy, duration, end, tracking and limits.
+/// One sentence: policy, duration, end, what was cut of its command, tracking and limits.
 std::string verdict(const RunSeries& run);
 
 nlohmann::ordered_json run_json(const RunSeries& run);

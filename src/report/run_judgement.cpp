@@ -36,6 +36,9 @@ void RunJudgement::reference(const pmg_msgs::reference_t& message) {
   Reference& reference = tick_.reference;
   reference.phase_rate_per_s = message.phase_rate_per_s;
   reference.gain = message.gain;
+  std::ranges::copy(message.user, tick_.user.u.begin());
+  std::ranges::copy(message.command, reference.command.u.begin());
+  reference.command_limited = message.command_limited != 0;
   tick_.optimised.status = static_cast<gco::Status>(message.gco_status);
   for (const Foot foot : {kLeft, kRight}) {
     reference.contact[foot] = message.contact[foot] != 0;

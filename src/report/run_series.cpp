@@ -96,6 +96,7 @@ class Gathering {
       const sil::RunOutcome outcome = judgement_->outcome();
       run_.tracking = outcome.tracking;
       run_.reference_slip = outcome.reference_slip;
+      run_.cut = outcome.cut;
     }
     if (!run_.identified) run_.problems.push_back("no ROBOT_INFO: who ran what is unknown, joints have numbers");
     const auto tell = [this](std::int64_t count, const char* what) {

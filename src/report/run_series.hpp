@@ -12,6 +12,7 @@
 #include "pmg_msgs/robot_info_t.hpp"
 #include "report/limited_joints.hpp"
 #include "report/thinning.hpp"
+#include "sil/command_cut.hpp"
 #include "sil/metrics.hpp"
 #include "work/progress.hpp"
 
@@ -110,6 +111,7 @@ struct RunSeries {
 
   sil::TrackingSummary tracking;      ///< followed_s is 0 without a simulation's truth
   gco::SlipSummary reference_slip;    ///< as in summary.json
+  sil::CommandCut cut;                ///< likewise
   std::vector<LimitedJoint> limited;  ///< most often limited first
 
   bool fell = false;

@@ -23,7 +23,12 @@ void RunMeasure::add_reference(const control::TickResult& result) {
   if (result.mode == control::Mode::kFault && last_mode_ != control::Mode::kFault) sums_.faults.push_back(result.fault);
   last_mode_ = result.mode;
 
-  if (control::upright(result.mode)) slip_.add(result.reference, result.optimised);
+  if (control::upright(result.mode)) {
+    slip_.add(result.reference, result.optimised);
+    cuts_.add(result.user, result.reference.command, result.reference.command_limited);
+  } else {
+    cuts_.skip();
+  }
   if (result.reference.phase_rate_per_s > 0.0) gait_period_s_ = 1.0 / result.reference.phase_rate_per_s;
 }
 
@@ -46,6 +51,7 @@ RunOutcome RunMeasure::outcome() const {
   outcome.fell_at_s = metrics_.fell_at_s();
   outcome.tracking = metrics_.summary();
   outcome.reference_slip = slip_.summary();
+  outcome.cut = cuts_.worst();
   return outcome;
 }
 

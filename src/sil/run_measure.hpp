@@ -6,6 +6,7 @@
 
 #include "control/tick.hpp"
 #include "gco/slip_statistics.hpp"
+#include "sil/command_cut.hpp"
 #include "sil/metrics.hpp"
 #include "sil/scenario.hpp"
 #include "sim/world.hpp"
@@ -24,6 +25,7 @@ struct RunOutcome {
   std::vector<faults::Fault> faults;
   TrackingSummary tracking;
   gco::SlipSummary reference_slip;
+  CommandCut cut;  ///< what was asked beyond what the generator admits
 };
 
 /// The state of a run after one tick.
@@ -41,8 +43,8 @@ class RunMeasure {
   /// One tick; asked: the scenario's command. Ticks on the gantry and before the first standing are not judged.
   void add(const control::TickResult& result, const model::GroundTruth& truth, bool hoisted, const Command& asked);
 
-  /// Its two halves, for who knows no truth. Of the result the first reads mode, fault, reference and optimised, the
-  /// second the mode.
+  /// Its two halves, for who knows no truth. Of the result the first reads mode, fault, user, reference and optimised,
+  /// the second the mode.
   void add_reference(const control::TickResult& result);
   void add_truth(const control::TickResult& result, const model::GroundTruth& truth, bool hoisted,
                  const Command& asked);
@@ -53,6 +55,7 @@ class RunMeasure {
  private:
   Metrics metrics_;
   gco::SlipStatistics slip_;
+  CommandCuts cuts_;
   double gait_period_s_;
   control::Mode last_mode_ = control::Mode::kPassive;
   std::int64_t ticks_ = 0;

@@ -19,10 +19,13 @@ std::string progress_text(const RunProgress& progress) {
 std::string run_text(const RunOutcome& outcome, const nlohmann::ordered_json& summary) {
   const TrackingSummary& tracking = outcome.tracking;
   const gco::SlipSummary& slip = outcome.reference_slip;
-  std::string text = fmt::format("{}: {:.1f} s simulated ({:.1f} s on the gantry), {:.1f}x real time, {}{}\n",
-                                 summary["scenario"].get<std::string>(), outcome.duration_s, outcome.hoisted_s,
-                                 summary["realtime_factor"].get<double>(), outcome.fell ? "FELL" : "did not fall",
-                                 outcome.interrupted ? ", interrupted" : "");
+  std::string text = fmt::format(
+      "{}: {:.1f} s simulated ({:.1f} s on the gantry), {:.1f}x real time, {}{}{}\n",
+      summary["scenario"].get<std::string>(), outcome.duration_s, outcome.hoisted_s,
+      summary["realtime_factor"].get<double>(), outcome.fell ? "FELL" : "did not fall",
+      outcome.interrupted ? ", interrupted" : "",
+      outcome.cut.commands > 0 ? fmt::format(", COMMAND CUT for {:.1f} s: {}", outcome.cut.for_s, cut_text(outcome.cut))
+                               : "");
   text += fmt::format(
       "tracking over {:.1f} s: velocity {:.3f} m/s, yaw {:.3f} rad/s, pitch {:.3f} rad, roll {:.3f} rad, height {:.3f} "
       "m\n",

@@ -66,6 +66,7 @@ nlohmann::ordered_json summary_json(const RunIdentity& run, const RunOutcome& ou
       {"realtime_factor", run.wall_s > 0.0 ? outcome.duration_s / run.wall_s : 0.0},
       {"tracking", tracking_json(outcome.tracking)},
       {"reference_slip", reference_slip_json(outcome.reference_slip)},
+      {"command_cut", cut_json(outcome.cut)},
       {"timing_us",
        {{"tick", stage_json(timing, &control::StageTimes::tick_ns)},
         {"generator", stage_json(timing, &control::StageTimes::generator_ns)},

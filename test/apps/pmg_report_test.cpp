@@ -55,7 +55,8 @@ TEST_F(PmgReport, GivesMachinesTheFigures) {
 // summary's, digit by digit.
 TEST_F(PmgReport, ItsErrorsAndItsSlipAreThoseOfTheSummary) {
   std::ofstream(folder_ / "walk.yaml") << "name: walk\nsteps:\n  - {for_s: 1.5, text: stand, mode: stand}\n"
-                                       << "  - {for_s: 2.5, text: go, mode: walk, command: {vx_m_s: 0.5}}\n";
+                                       << "  - {for_s: 2.5, text: go, mode: walk, command: {vx_m_s: 0.5}}\n"
+                                       << "  - {for_s: 1, text: run, command: {vx_m_s: 50}}\n";
   for (const std::string policy : {"pmg", "none"}) {
     const std::string out = (folder_ / policy).string();
     test::RunningProgram sil(
@@ -70,8 +71,13 @@ TEST_F(PmgReport, ItsErrorsAndItsSlipAreThoseOfTheSummary) {
     EXPECT_EQ(report["tracking"], summary["tracking"]) << policy;
     EXPECT_GT(summary["reference_slip"]["before_mean_m_s"].get<double>(), 0.0) << policy;
     EXPECT_EQ(report["reference_slip"], summary["reference_slip"]) << policy;
+    EXPECT_EQ(report["command_cut"], summary["command_cut"]) << policy;
+    EXPECT_EQ(summary["command_cut"].is_null(), policy == "none") << "without a policy it has fallen by then";
+    if (policy == "pmg") {
+      EXPECT_THAT(summary["command_cut"]["text"].get<std::string>(), HasSubstr("forward 50 m/s asked"));
+    }
     EXPECT_EQ(report["scenario"], "walk");
-    EXPECT_EQ(report["steps"].size(), 2U);
+    EXPECT_EQ(report["steps"].size(), 3U);
     EXPECT_EQ(report["steps"][1]["text"], "go");
     EXPECT_NEAR(report["steps"][1]["from_s"].get<double>(), 1.5, 0.011);
   }

@@ -2,9 +2,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <utility>
 
 #include "apps/running_program.hpp"
 #include "folders.hpp"
@@ -116,6 +118,16 @@ TEST_F(RobotBench, ShowsWhatIsWornInTheExamplesKnee) {
                 {at("knee"), "--also", "coulomb", "viscous", "--threads", "2", "--out", at("calibrated")}),
             0)
       << err_;
+  const auto healthy = nlohmann::json::parse(std::ifstream(at("calibrated/fit.json")))["parameters"];
+  for (const auto& [name, truth] : {std::pair{"drive.kp_scale", 1.0},
+                                    {"drive.kd_scale", 1.0},
+                                    {"transmission.armature_kg_m2", 0.04},
+                                    {"friction.coulomb_Nm", 0.6},
+                                    {"friction.viscous_Nm_s_per_rad", 0.3}}) {  // robot.yaml's
+    const double deviation = healthy[name]["deviation"];
+    EXPECT_LT(std::abs(healthy[name]["value"].get<double>() - truth), 3.0 * deviation) << name;
+    EXPECT_LT(deviation, 0.02 * truth) << name << ": a deviation that says nothing covers everything";
+  }
   ASSERT_EQ(run("pmg_sil", {"--robot", "z1", "--bench", "left_knee", "--excitation", at("excitation"), "--motor",
                             hidden_file.string(), "--out", at("worn")}),
             0)

@@ -249,6 +249,40 @@ TEST(Table1, LimitsAndThePapersFiguresAreThoseOfThePolicyByName) {
   EXPECT_FALSE(table.all_reached()) << "falls do too";
 }
 
+/// What stands between these two in a page; "" where the first is missing.
+std::string between(const std::string& html, const std::string& from, const std::string& to) {
+  const std::size_t begin = html.find(from), end = html.find(to, begin);
+  return begin == std::string::npos ? "" : html.substr(begin, end - begin);
+}
+
+TEST(Table1, ThePapersFiguresStandInTheTableWithWhatTheyAreOfAndInNoPicture) {
+  Table1 table;
+  table.scenario = standing(1.0);
+  table.yardsticks.resize(1);
+  table.cases = {{.name = "pmg", .candidate = without_policy(), .plants = {}}};
+  TrialResult run;
+  run.complete = true;
+  run.judged_s = 1.0;
+  run.errors = {0.05, 0.07, 0.03, 0.03, 0.01};
+  table.campaign.runs = {{run, run}};
+  table.campaign.courses.resize(1);
+  for (const char* scenario : {"table1_full", kGentleScenario}) {
+    table.scenario.name = scenario;
+    evaluate(table);
+    const std::string html = page_of(table).html();
+    const std::string pictures = between(html, "<h2 id=\"s1\">Errors against the user", "The paper&#39;s figures");
+    EXPECT_NE(pictures, "") << scenario << ": what they are of is said between the pictures and the table";
+    EXPECT_EQ(pictures.find("paper"), std::string::npos) << scenario;
+    EXPECT_NE(between(html, "The paper&#39;s figures", "</p>").find("compare the order of the policies, not the sizes"),
+              std::string::npos);
+    const std::string row = between(html, "<td>pmg, paper (other commands, other robot)</td>", "</tr>");
+    EXPECT_NE(row.find("0.1228"), std::string::npos) << scenario;
+  }
+  table.cases[0].name = "mine";
+  evaluate(table);
+  EXPECT_EQ(page_of(table).html().find("paper"), std::string::npos) << "of a policy that it doesn't know";
+}
+
 TEST(Table1, InterruptedItIsNotWorthWhatItsRunsSoFarAre) {
   Table1 table;
   table.scenario.name = kGentleScenario;

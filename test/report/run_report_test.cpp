@@ -51,6 +51,19 @@ TEST_F(RunReport, ShowsAFaultInItsWords) {
   EXPECT_THAT(html, HasSubstr("[[2.0,\"tilt\"]]")) << "a mark in the timeline";
 }
 
+TEST_F(RunReport, ARunThatWasAskedForMoreThanItsRobotCanDoIsNotGreenAndSaysSoFirst) {
+  const RunSeries cut = run({.beyond_vx_m_s = 50.0});
+  const std::string html = run_report({cut}).html();
+  EXPECT_THAT(html, Not(HasSubstr("class=\"verdict good\"")));
+  EXPECT_THAT(html, HasSubstr("class=\"verdict unfinished\">PARTIAL: the command was cut, and the robot did what was "
+                              "admitted: forward 50 m/s asked, 0.5 m/s admitted. "));
+  EXPECT_THAT(verdict(cut), HasSubstr("did not fall. COMMAND CUT for 2.0 s: forward 50 m/s asked, 0.5 m/s admitted."));
+  EXPECT_EQ(run_json(cut)["command_cut"]["text"], "forward 50 m/s asked, 0.5 m/s admitted");
+  EXPECT_EQ(worth_of_reading(cut).exit_code(), 0) << "the log was read";
+  EXPECT_TRUE(run_json(run({}))["command_cut"].is_null());
+  EXPECT_THAT(verdict(run({})), Not(HasSubstr("CUT")));
+}
+
 TEST_F(RunReport, NamesBothRunsThatItLaysOverEachOther) {
   const std::string html =
       run_report({run({}, "first.lcm"), run({.robot = "other", .fault_at = 10}, "second.lcm")}).html();

@@ -35,6 +35,7 @@ struct SmallLog {
   std::int64_t first_tick = 0;       ///< number of the first tick
   std::set<std::string> left_out{};  ///< channels
   double measured_vx_m_s = 0.5;
+  double beyond_vx_m_s = 0.0;  ///< asked from the second second on, beyond the 0.5 m/s that are admitted; 0: nothing is
   std::int64_t start_ns = 5'000'000'000;
 
   static constexpr std::int64_t kTick_ns = 10'000'000;
@@ -100,6 +101,10 @@ struct SmallLog {
     message.contact[0] = tick % 50 < 30;
     message.contact[1] = tick % 50 >= 20;
     message.user[0] = message.command[0] = 0.5;
+    if (beyond_vx_m_s != 0.0 && tick >= 100) {
+      message.user[0] = beyond_vx_m_s;
+      message.command_limited = 1;
+    }
     message.optimised[0] = 0.48;
     if (tick >= 100) {
       message.gain = 0.5;

@@ -52,10 +52,46 @@ class SpoiltDrives final : public hal::Hal {
   model::JointCommand released_;
 };
 
+/// A policy whose results something may spoil.
+class SpoiltPolicy final : public policy::Policy {
+ public:
+  using Spoil = std::function<void(const Reference&, policy::Status&, JointVector&)>;
+  SpoiltPolicy(std::unique_ptr<policy::Policy> own, const Spoil& spoil) : own_(std::move(own)), spoil_(spoil) {}
+  Variant variant() const override { return own_->variant(); }
+  std::optional<policy::DriveGains> gains() const override { return own_->gains(); }
+  std::optional<double> action_bound_rad() const override { return own_->action_bound_rad(); }
+  bool needs_ground() const override { return own_->needs_ground(); }
+  void reset() noexcept override { own_->reset(); }
+  void unsent() noexcept override { own_->unsent(); }
+  policy::Status act(const model::RobotState& state, const Reference& reference, const Command& observed,
+                     JointVector& q_des) noexcept override {
+    policy::Status status = own_->act(state, reference, observed, q_des);
+    if (spoil_) spoil_(reference, status, q_des);
+    return status;
+  }
+
+ private:
+  std::unique_ptr<policy::Policy> own_;
+  const Spoil& spoil_;
+};
+
+/// What something may spoil within the control thread.
+struct SpoiltTick final : control::TickSpoiler {
+  void spoil(Reference& reference) noexcept override {
+    if (reference_is_none) reference.q.setConstant(std::nan(""));
+  }
+  void spoil(control::TickResult& result) noexcept override {
+    if (command_is_none) result.command.q.setConstant(std::nan(""));
+  }
+  bool reference_is_none = false, command_is_none = false;
+};
+
 /// Controller, simulated robot on its hoist, network and keyboard in one thread, on a clock that the simulation moves.
 class Driven {
  public:
   Driven() {
+    loaded.policy = std::make_unique<SpoiltPolicy>(std::move(loaded.policy), spoil_policy);
+    loaded.options.spoiler = &spoilt_tick;
     tick = control::make_tick(loaded, clock);
     cycle = std::make_unique<control::ControlCycle>(*tick, bus_link, inbox, clock);
     bus = std::make_unique<hal::BusCycle>(drives, bus_link, loaded.robot, clock);
@@ -73,11 +109,13 @@ class Driven {
   }
 
   void step() {  // 10 ms
-    cycle->run(clock.now_ns());
-    outbox.publish(cycle->record());
+    if (!control_sleeps) {
+      cycle->run(clock.now_ns() - late_ns);
+      outbox.publish(cycle->record());
+    }
     for (int k = 0; k < 5; ++k) {
       clock.advance_to(clock.now_ns() + hal::BusCycle::kPeriod_ns);
-      bus->run();
+      if (!bus_sleeps) bus->run();
       comms->step(0);
       link.receive(0);
     }
@@ -132,6 +170,10 @@ class Driven {
     return read;
   }
 
+  bool control_sleeps = false, bus_sleeps = false;  ///< the thread; its computer does something else
+  std::int64_t late_ns = 0;                         ///< of each tick
+  SpoiltPolicy::Spoil spoil_policy;
+  SpoiltTick spoilt_tick;
   io::SimulationClock clock;
   io::LcmLink link{"memq://"};
   control::LoadedControl loaded = control::load_control({});
@@ -156,6 +198,7 @@ class Driven {
 struct Mishap {
   const char* name;
   void (*happens)(Driven&);
+  faults::FaultCode fault = faults::FaultCode::kNone;  ///< that it ends in; kNone: whatever it ends in
 };
 
 void PrintTo(const Mishap& mishap, std::ostream* out) { *out << mishap.name; }
@@ -166,7 +209,27 @@ void spoil_for(Driven& driven, double seconds, std::function<hal::BusStatus(mode
   driven.drives.spoil = nullptr;
 }
 
-constexpr std::array kMishaps = {
+/// The state that the drives report, for a tenth of a second.
+void misread(Driven& driven, void (*spoil)(model::RobotState&)) {
+  spoil_for(driven, 0.1, [spoil](model::RobotState& state) {
+    spoil(state);
+    return hal::BusStatus::kOk;
+  });
+}
+
+/// One of Driven's flaws, for so long.
+template <typename Flaw>
+void with(Driven& driven, Flaw& flaw, Flaw bad, double seconds) {
+  const Flaw good = std::exchange(flaw, std::move(bad));
+  driven.run(seconds);
+  flaw = good;
+}
+
+constexpr int kKnee = 3;
+
+using faults::FaultCode;
+
+const std::array kMishaps = {
     Mishap{"NothingAtAll", [](Driven&) {}},
     Mishap{"StoppedAMomentAgo",
            [](Driven& driven) {
@@ -202,40 +265,97 @@ constexpr std::array kMishaps = {
     Mishap{"TooHot",
            [](Driven& driven) {
              spoil_for(driven, 2.0, [](model::RobotState& state) {
-               state.temperature_degC[3] = 200.0;
+               state.temperature_degC[kKnee] = 200.0;
                return hal::BusStatus::kOk;
              });
-             EXPECT_EQ(driven.result().fault.code, faults::FaultCode::kTemperature);
-           }},
+           },
+           FaultCode::kTemperature},
     Mishap{"SensorWithoutANumber",
-           [](Driven& driven) {
-             spoil_for(driven, 0.1, [](model::RobotState& state) {
-               state.q[3] = std::nan("");
-               return hal::BusStatus::kOk;
-             });
-             EXPECT_EQ(driven.result().fault.code, faults::FaultCode::kStateNotFinite);
-           }},
+           [](Driven& driven) { misread(driven, [](model::RobotState& s) { s.q[kKnee] = std::nan(""); }); },
+           FaultCode::kStateNotFinite},
     Mishap{"JointTooFast",
            [](Driven& driven) {
              driven.hold("w", 2.0);
-             spoil_for(driven, 0.2, [](model::RobotState& state) {
-               state.dq[3] = 100.0;
-               return hal::BusStatus::kOk;
-             });
-             EXPECT_EQ(driven.result().fault.code, faults::FaultCode::kJointVelocity);
-           }},
-    Mishap{"BusLostAsItStands",
+             misread(driven, [](model::RobotState& s) { s.dq[kKnee] = 100.0; });
+           },
+           FaultCode::kJointVelocity},
+    Mishap{"JointBeyondItsRange",
+           [](Driven& driven) { misread(driven, [](model::RobotState& s) { s.q[kKnee] = 4.0; }); },
+           FaultCode::kJointLimit},
+    Mishap{"TorqueTooLarge",
+           [](Driven& driven) { misread(driven, [](model::RobotState& s) { s.tau[kKnee] = 156.0; }); },
+           FaultCode::kJointTorque},
+    Mishap{"ImuReadsATilt",
            [](Driven& driven) {
-             spoil_for(driven, 0.1, [](model::RobotState&) { return hal::BusStatus::kLost; });
-             EXPECT_EQ(driven.result().fault.code, faults::FaultCode::kBusLost);
-           }},
+             misread(driven, [](model::RobotState& s) {
+               s.orientation_WI = Eigen::AngleAxisd(1.3, Eigen::Vector3d::UnitX()) * s.orientation_WI;
+             });
+           },
+           FaultCode::kTilt},
+    Mishap{"ImuReadsALean",
+           [](Driven& driven) {
+             misread(driven, [](model::RobotState& s) {
+               s.orientation_WI = Eigen::AngleAxisd(0.8, Eigen::Vector3d::UnitY()) * s.orientation_WI;
+             });
+           },
+           FaultCode::kTorsoAttitude},
+    Mishap{"BusLostAsItStands",
+           [](Driven& driven) { spoil_for(driven, 0.1, [](model::RobotState&) { return hal::BusStatus::kLost; }); },
+           FaultCode::kBusLost},
     Mishap{"BusLostInTheAir",
            [](Driven& driven) {
              driven.press("h");
              driven.run(6.0);
              spoil_for(driven, 0.1, [](model::RobotState&) { return hal::BusStatus::kLost; });
-             EXPECT_EQ(driven.result().fault.code, faults::FaultCode::kBusLost);
-           }},
+           },
+           FaultCode::kBusLost},
+    Mishap{"BusThreadSleeps", [](Driven& driven) { with(driven, driven.bus_sleeps, true, 0.1); },
+           FaultCode::kStaleState},
+    Mishap{"ControlThreadSleeps",
+           [](Driven& driven) {
+             with(driven, driven.control_sleeps, true, 0.1);
+             driven.run(0.1);
+           },
+           FaultCode::kControlFrozen},
+    Mishap{"TicksAreLate", [](Driven& driven) { with(driven, driven.late_ns, std::int64_t{12'000'000}, 0.3); },
+           FaultCode::kOverrun},
+    Mishap{"CommandWithoutANumber",
+           [](Driven& driven) {
+             with(driven, driven.spoilt_tick.command_is_none, true, 0.02);
+             driven.run(0.1);
+           },
+           FaultCode::kCommandNotFinite},
+    Mishap{"ReferenceWithoutANumber",
+           [](Driven& driven) {
+             with(driven, driven.spoilt_tick.reference_is_none, true, 0.1);
+             driven.run(2.0);
+           },
+           FaultCode::kReferenceNotFinite},
+    Mishap{"PolicyIsLate",
+           [](Driven& driven) {
+             with(driven, driven.spoil_policy, SpoiltPolicy::Spoil([](const Reference&, policy::Status& status, auto&) {
+                    status = policy::Status::kLate;
+                  }),
+                  0.3);
+           },
+           FaultCode::kStalePolicy},
+    Mishap{"PolicyWithoutANumber",
+           [](Driven& driven) {
+             with(driven, driven.spoil_policy, SpoiltPolicy::Spoil([](const Reference&, policy::Status&, auto& q_des) {
+                    q_des[kKnee] = std::nan("");
+                  }),
+                  0.1);
+           },
+           FaultCode::kPolicyNotFinite},
+    Mishap{"PolicyPullsFarAway",
+           [](Driven& driven) {
+             with(driven, driven.spoil_policy,
+                  SpoiltPolicy::Spoil([](const Reference& reference, policy::Status&, auto& q_des) {
+                    q_des[q_des.size() - 1] = reference.q[q_des.size() - 1] + 5.0;  // an arm's: no fall
+                  }),
+                  0.4);
+           },
+           FaultCode::kActionOutOfRange},
     Mishap{"LiftedAsItWalks",
            [](Driven& driven) {
              driven.hold("w", 2.0);
@@ -255,6 +375,20 @@ constexpr std::array kMishaps = {
            }},
 };
 
+void let_happen(const Mishap& mishap, Driven& driven) {
+  mishap.happens(driven);
+  if (mishap.fault == FaultCode::kNone) return;
+  EXPECT_EQ(driven.result().mode, control::Mode::kFault);
+  EXPECT_STREQ(to_string(driven.result().fault.code), to_string(mishap.fault));
+}
+
+TEST(WayUpFaults, EveryFaultHasAMishapThatEndsInIt) {
+  for (std::size_t code = 1; code < faults::kFaultCodes; ++code) {
+    const auto fault = static_cast<FaultCode>(code);
+    EXPECT_NE(std::ranges::find(kMishaps, fault, &Mishap::fault), kMishaps.end()) << to_string(fault);
+  }
+}
+
 class WayUp : public testing::TestWithParam<Mishap> {};
 
 TEST_P(WayUp, WhatTheScreenSaysEndsOnItsFeet) {
@@ -263,7 +397,7 @@ TEST_P(WayUp, WhatTheScreenSaysEndsOnItsFeet) {
   driven.press("enter");
   driven.do_what_the_screen_says(20.0);
   ASSERT_TRUE(driven.stands_alone()) << driven.driver.text();
-  GetParam().happens(driven);
+  let_happen(GetParam(), driven);
   const std::vector<std::string> read = driven.do_what_the_screen_says();
   EXPECT_TRUE(driven.stands_alone()) << testing::PrintToString(read);
 }
@@ -281,7 +415,7 @@ TEST_P(WayUpAgain, WhateverHappensInWhateverOrderItEndsOnItsFeet) {
     const Mishap& mishap = kMishaps.at(random() % kMishaps.size());
     SCOPED_TRACE(mishap.name);
     driven.run(static_cast<double>(random() % 200) * 0.01);
-    mishap.happens(driven);
+    let_happen(mishap, driven);
     read = driven.do_what_the_screen_says();
   }
   EXPECT_TRUE(driven.stands_alone()) << testing::PrintToString(read);
