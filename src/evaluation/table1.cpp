@@ -58,10 +58,13 @@ double Table1::figure(std::size_t error) const {
   return gentle() ? summaries[judged].errors[error].mean : shares(judged)[error];
 }
 
+bool Table1::measured() const {
+  return summaries[judged].trials > 0 && (gentle() || yardsticks[judged].nothing.complete);
+}
+
 /// A channel without any command in the scenario has no share and passes.
 bool Table1::reached(std::size_t error) const {
-  const double value = figure(error);
-  return value <= limit(error) || (!gentle() && std::isnan(value) && summaries[judged].trials > 0);
+  return measured() && (figure(error) <= limit(error) || (!gentle() && std::isnan(figure(error))));
 }
 
 work::Worth worth_of(const Table1& table) {
@@ -71,7 +74,7 @@ work::Worth worth_of(const Table1& table) {
   if (judged.trials == 0) return worth;
   worth.add_if(judged.falls > 0, work::Grade::kMissed,
                fmt::format("{} fell in {} of {} runs", name, judged.falls, judged.trials));
-  for (std::size_t e = 0; e < kErrors; ++e) {
+  for (std::size_t e = 0; table.measured() && e < kErrors; ++e) {
     if (table.reached(e)) continue;
     worth.add(work::Grade::kMissed,
               table.gentle() ? fmt::format("{}'s {} error {:.4f} {} is over {}", name, kErrorNames[e], table.figure(e),

@@ -49,7 +49,8 @@ struct Table1 {
   Errors shares(std::size_t c) const;      ///< share_left of a case's mean errors
   double figure(std::size_t error) const;  ///< of the judged policy: mean error or share, as its limit counts
   double limit(std::size_t error) const { return gentle() ? kErrorLimits[error] : kShareLimits[error]; }
-  bool reached(std::size_t error) const;  ///< figure(error) is within its limit
+  bool measured() const;                  ///< what the limits hold against: errors or, for shares, yardsticks, too
+  bool reached(std::size_t error) const;  ///< figure(error) is within its limit, or nothing was asked of that channel
   bool all_reached() const;               ///< all errors reached, and no fall
 };
 

@@ -106,9 +106,15 @@ pages::Table errors_table(const Table1& table) {
     const CaseSummary& summary = table.summaries[c];
     estimates(name, summary.errors, fmt::format("{} of {}", summary.falls, summary.trials));
     estimates(name + ", raw: tick by tick", summary.errors_raw, "");
-    figures(name + ", doing nothing", table.yardsticks[c].nothing.errors, "");
-    figures(name + ", perfect follower", table.yardsticks[c].follower.errors, "");
-    figures(name + ", share left", table.shares(c), "");
+    if (table.yardsticks[c].nothing.complete) {
+      figures(name + ", doing nothing", table.yardsticks[c].nothing.errors, "");
+      figures(name + ", perfect follower", table.yardsticks[c].follower.errors, "");
+      const Errors shares = table.shares(c);
+      add(
+          name + ", share left",
+          [&](std::size_t e) { return std::isnan(shares[e]) ? "nothing asked" : fmt::format("{:.4f}", shares[e]); },
+          "");
+    }
     if (std::isfinite(summary.errors_beyond_reach[0].mean))
       estimates(name + ", beyond the clips' reach", summary.errors_beyond_reach, "");
     if (const auto published = published_errors(name))
@@ -116,7 +122,12 @@ pages::Table errors_table(const Table1& table) {
   }
   add(
       fmt::format("{}{}, limit", table.cases[table.judged].name, table.gentle() ? "" : ", share left"),
-      [&](std::size_t e) { return fmt::format("{:.4f} {}", table.limit(e), table.reached(e) ? "ok" : "MISSED"); },
+      [&](std::size_t e) {
+        return fmt::format("{:.4f} {}", table.limit(e),
+                           !table.measured()  ? "not measured"
+                           : table.reached(e) ? "ok"
+                                              : "MISSED");
+      },
       table.summaries[table.judged].falls == 0 ? "0 ok" : "0 MISSED");
   return out;
 }

@@ -283,6 +283,33 @@ TEST(Table1, ThePapersFiguresStandInTheTableWithWhatTheyAreOfAndInNoPicture) {
   EXPECT_EQ(page_of(table).html().find("paper"), std::string::npos) << "of a policy that it doesn't know";
 }
 
+TEST(Table1, ALimitOnAShareWhoseYardsticksAreMissingIsNotMeasuredAndNoChannelWithoutCommandIsANumber) {
+  Table1 table;
+  table.scenario = standing(1.0);
+  table.scenario.name = "table1_full";
+  table.yardsticks.resize(1);
+  table.cases = {{.name = "pmg", .candidate = without_policy(), .plants = {}}};
+  TrialResult run;
+  run.complete = true;
+  run.judged_s = 1.0;
+  table.campaign.runs = {{run, run}};
+  table.campaign.courses.resize(1);
+  table.campaign.complete = false;
+  evaluate(table);
+  EXPECT_FALSE(table.all_reached());
+  std::string html = page_of(table).html();
+  EXPECT_NE(html.find("0.1500 not measured"), std::string::npos);
+  EXPECT_EQ(html.find("0.1500 ok"), std::string::npos);
+  EXPECT_EQ(worth_of(table).grade(), work::Grade::kInterrupted);
+  table.yardsticks[0].nothing.complete = true;  // and 0 in every channel: nothing was asked
+  table.campaign.complete = true;
+  evaluate(table);
+  EXPECT_TRUE(table.all_reached());
+  html = page_of(table).html();
+  EXPECT_NE(html.find("nothing asked"), std::string::npos);
+  EXPECT_EQ(html.find("nan"), std::string::npos);
+}
+
 TEST(Table1, InterruptedItIsNotWorthWhatItsRunsSoFarAre) {
   Table1 table;
   table.scenario.name = kGentleScenario;

@@ -134,6 +134,7 @@ TEST(Table1, OffTheGentleSequenceTheShareLeftIsJudged) {
   Yardstick between;
   between.nothing.errors = {0.5, 0.5, 0.1, 0.1, 0.1};
   between.follower.errors = {0.1, 0.1, 0.02, 0.02, 0.02};
+  between.nothing.complete = true;
   table.yardsticks = {between};
   TrialResult run;
   run.complete = true;
