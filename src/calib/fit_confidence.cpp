@@ -53,9 +53,10 @@ Linearised linearised(const FitProblem& problem, const Eigen::VectorXd& point, u
   return found;
 }
 
-/// (fit, seen parameters) => (standard deviation of each, in edges of the cube): sqrt(A^-1 B A^-1 + d d^T).
-Eigen::VectorXd deviations(const fitting::LinearisedFit& fit, const std::vector<Eigen::Index>& seen) {
-  const fitting::Covariance covariance = fitting::cluster_robust_covariance(fit, seen);
+/// (fit, its covariance, seen parameters) => (standard deviation of each, in edges of the cube): sqrt(A^-1 B A^-1 + d
+/// d^T).
+Eigen::VectorXd deviations(const fitting::LinearisedFit& fit, const fitting::Covariance& covariance,
+                           const std::vector<Eigen::Index>& seen) {
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(fit.coordinates.size());
   for (const fitting::NormalEquations& block : fit.blocks) gradient += block.gradient;
   const Eigen::VectorXd left = covariance.inverse * gradient(seen);
@@ -117,8 +118,9 @@ std::vector<Confidence> confidence(const FitProblem& problem, const std::vector<
     }
   }
   const fitting::Covariance covariance = fitting::cluster_robust_covariance(fit, seen);
-  Eigen::VectorXd of_edge = deviations(fit, seen);
-  for (const fitting::LinearisedFit& with : longer) of_edge = of_edge.cwiseMax(deviations(with, seen));
+  Eigen::VectorXd of_edge = deviations(fit, covariance, seen);
+  for (const fitting::LinearisedFit& with : longer)
+    of_edge = of_edge.cwiseMax(deviations(with, fitting::cluster_robust_covariance(with, seen), seen));
   for (std::size_t i = 0; i < seen.size(); ++i) {
     const auto d = static_cast<std::size_t>(seen[i]);
     const auto row = static_cast<Eigen::Index>(i);

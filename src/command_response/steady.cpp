@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "evaluation/course.hpp"
+#include "operator/command_text.hpp"
 
 namespace pmg::command_response {
 
@@ -81,12 +82,6 @@ HeldResult run_held(const SteadyTest& test, const HeldCommand& asked, const sim:
     result.admitted.u[c] = share * admitted.u[c];
   }
   return result;
-}
-
-ordered_json command_json(const Command& command) {
-  ordered_json json;
-  for (std::size_t c = 0; c < kChannels; ++c) json[kChannelNames[c]] = command.u[c];
-  return json;
 }
 
 }  // namespace
@@ -177,9 +172,9 @@ ordered_json to_json(const SteadyTest& test) {
     const HeldResult& result = test.results[i];
     if (!result.complete) continue;
     json["commands"].push_back({{"text", asked.text},
-                                {"command", command_json(asked.command)},
-                                {"admitted", command_json(result.admitted)},
-                                {"did", command_json(result.did)},
+                                {"command", ops::command_json(asked.command.u)},
+                                {"admitted", ops::command_json(result.admitted.u)},
+                                {"did", ops::command_json(result.did.u)},
                                 {"error", worst_error(asked, result.did)},
                                 {"drift", worst_drift(asked, result.did, test.limits)},
                                 {"limit", asked.limit},

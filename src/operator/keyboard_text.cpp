@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "io/plain_text.hpp"
+#include "operator/command_text.hpp"
 #include "operator/robot_text.hpp"
 #include "operator/words.hpp"
 
@@ -117,12 +118,12 @@ DrivingTable driving_table(const RobotDriver& driver, const RobotNews* news, dou
   std::vector<Row> rows = head_rows(driver, news, silence_s);
   if (news != nullptr) {
     constexpr std::array kLabels = {"forwards", "left", "turn", "bend", "lean", "height"};
-    constexpr std::array kUnits = {"m/s", "m/s", "rad/s", "rad", "rad", "m"};
     for (std::size_t i = 0; i < kChannels; ++i) {
       const std::size_t channel = kOrder[i];
       const pmg_msgs::reference_t* reference = reference_in_force(*news);
       const std::string taken =
-          reference != nullptr ? fmt::format("{:+.2f} {} taken", reference->command[channel], kUnits[i]) : "";
+          reference != nullptr ? fmt::format("{:+.2f} {} taken", reference->command[channel], kCommandUnits[channel])
+                               : "";
       rows.push_back({kLabels[i], fmt::format("{:+.2f} asked   {}", driver.asked().u[channel], taken)});
     }
     for (const Row& row : status_rows(*news, silence_s)) rows.push_back(row);

@@ -10,6 +10,7 @@
 
 #include "io/clock.hpp"
 #include "io/plain_text.hpp"
+#include "operator/command_text.hpp"
 #include "operator/taken_command.hpp"
 #include "operator/way_up.hpp"
 #include "operator/words.hpp"
@@ -93,12 +94,6 @@ std::optional<double> state_age_s(const RobotNews& news) {
 /// What somebody at a shell does next so that the robot stands; empty: nothing.
 std::string next_text(const RobotNews& news, double silence_s) {
   return way_up(posture(news, news.heard_ns + io::nanoseconds(silence_s)), shell_manner());
-}
-
-nlohmann::ordered_json command_json(const double (&u)[kChannels]) {
-  nlohmann::ordered_json json;
-  for (std::size_t i = 0; i < kChannels; ++i) json[kChannelNames[i]] = u[i];
-  return json;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "operator/command_text.hpp"
 #include "operator/keyboard_text.hpp"
 
 namespace pmg::ops {
@@ -15,10 +16,6 @@ namespace {
 
 constexpr double kStill = 1e-4;  ///< m/s, rad/s, rad or m in a tick: below the slowest ramp
 constexpr std::array<const char*, kChannels> kShortNames = {"vx", "vy", "omega", "pitch", "roll", "height"};
-constexpr std::array<const char*, kChannels> kUnits = {"m/s", "m/s", "rad/s", "rad", "rad", "m"};
-
-/// Rounded for people: to a hundredth, near zero to a thousandth.
-bool alike(double a, double b) { return std::abs(a - b) <= 0.01 * std::max({std::abs(a), std::abs(b), 0.1}); }
 
 /// "limited: vx 50 -> 0.8 m/s (range -0.5 to 0.8)", and whether the ranges alone explain it.
 std::string words(const Command& asked, const RobotNews& news, bool settled) {
@@ -31,7 +28,7 @@ std::string words(const Command& asked, const RobotNews& news, bool settled) {
     if (wanted == 0.0 || alike(wanted, realised)) continue;
     ++channels;
     text += fmt::format("{}{} {:.3g} -> {:.3g} {}{}", text.empty() ? "limited: " : "; ", kShortNames[i], wanted,
-                        realised, kUnits[i], settled ? "" : " so far");
+                        realised, kCommandUnits[i], settled ? "" : " so far");
     const double allowed = limits ? std::clamp(wanted, limits->lower[i], limits->upper[i]) : wanted;
     if (allowed != wanted) text += fmt::format(" (range {:.3g} to {:.3g})", limits->lower[i], limits->upper[i]);
     by_ranges = by_ranges && (!settled || alike(realised, allowed));

@@ -4,38 +4,22 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "control/control_cycle.hpp"
+#include "operator/command_text.hpp"
 
 namespace pmg::sil {
 
 namespace {
 
 constexpr std::array<const char*, kChannels> kNames = {"forward", "sideways", "turn", "pitch", "roll", "height"};
-constexpr std::array<const char*, kChannels> kUnits = {"m/s", "m/s", "rad/s", "rad", "rad", "m"};
-constexpr double kSmallest = 0.1;  ///< m/s, rad/s, rad, m: below it a share says nothing
-
-/// Of one channel.
-double share_cut(double asked, double admitted) {
-  return std::abs(asked - admitted) / std::max({std::abs(asked), std::abs(admitted), kSmallest});
-}
-
-/// Less than this is rounding for people, as in operator/taken_command.cpp.
-bool cut(double asked, double admitted) { return share_cut(asked, admitted) > 0.01; }
 
 double share_cut(const Command& asked, const Command& admitted) {
   double most = 0.0;
   for (std::size_t i = 0; i < kChannels; ++i)
-    if (cut(asked.u[i], admitted.u[i])) most = std::max(most, share_cut(asked.u[i], admitted.u[i]));
+    if (!ops::alike(asked.u[i], admitted.u[i])) most = std::max(most, ops::share_apart(asked.u[i], admitted.u[i]));
   return most;
-}
-
-nlohmann::ordered_json command_json(const Command& command) {
-  nlohmann::ordered_json json;
-  for (std::size_t i = 0; i < kChannels; ++i) json[kChannelNames[i]] = command.u[i];
-  return json;
 }
 
 }  // namespace
@@ -44,9 +28,9 @@ std::string cut_text(const CommandCut& of_run) {
   std::string text;
   for (std::size_t i = 0; i < kChannels; ++i) {
     const double asked = of_run.asked.u[i], admitted = of_run.admitted.u[i];
-    if (!cut(asked, admitted)) continue;
+    if (ops::alike(asked, admitted)) continue;
     text += fmt::format("{}{} {:.3g} {} asked, {:.3g} {} admitted", text.empty() ? "" : "; ", kNames[i], asked,
-                        kUnits[i], admitted, kUnits[i]);
+                        ops::kCommandUnits[i], admitted, ops::kCommandUnits[i]);
   }
   if (of_run.commands > 1) text += fmt::format(" (the worst of {} commands)", of_run.commands);
   return text;
@@ -56,7 +40,7 @@ nlohmann::ordered_json cut_json(const CommandCut& of_run) {
   if (of_run.commands == 0) return nullptr;
   return {{"for_s", of_run.for_s},
           {"commands", of_run.commands},
-          {"worst", {{"asked", command_json(of_run.asked)}, {"admitted", command_json(of_run.admitted)}}},
+          {"worst", {{"asked", ops::command_json(of_run.asked.u)}, {"admitted", ops::command_json(of_run.admitted.u)}}},
           {"text", cut_text(of_run)}};
 }
 
