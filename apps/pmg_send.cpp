@@ -73,10 +73,7 @@ class Session {
     }
     if (source_.heard().size() == 1) return source_.heard().begin()->first;
     if (source_.heard().empty()) {
-      report({{.robot = "",
-               .mode = "unknown",
-               .text = fmt::format("no controller is heard on {}; {}", link_.url(), ops::kStartOne)}},
-             false);
+      report({{.robot = "", .mode = "unknown", .text = ops::nobody_heard(link_.url())}}, false);
       return "";
     }
     std::string names;
@@ -97,9 +94,7 @@ class Session {
     }
     std::vector<ops::Answer> answers = wish.answers();
     if (answers.empty()) {
-      answers.push_back({.robot = "",
-                         .mode = "unknown",
-                         .text = fmt::format("no controller is heard on {}; {}", link_.url(), ops::kStartOne)});
+      answers.push_back({.robot = "", .mode = "unknown", .text = ops::nobody_heard(link_.url())});
     }
     const bool reached = progress == ops::Progress::kReached;
     for (ops::Answer& answer : answers)

@@ -107,11 +107,7 @@ class Watch {
     return news;
   }
 
-  std::string nobody() const {
-    return fmt::format("no controller{} is heard on {}; {}",
-                       arguments_.robot.empty() ? "" : fmt::format(" named \"{}\"", arguments_.robot), link_.url(),
-                       ops::kStartOne);
-  }
+  std::string nobody() const { return ops::nobody_heard(link_.url(), arguments_.robot); }
 
   std::vector<std::string> screen(const ops::RobotNews& news) const {
     std::vector<std::string> lines = ops::screen(news, board_.silence_s(news));

@@ -17,4 +17,10 @@ std::string nobody_answers(const OperatorSource& source) {
                      names.empty() ? "" : fmt::format("; heard: {}", fmt::join(names, ", ")));
 }
 
+std::string nobody_heard(const std::string& url, const std::string& robot) {
+  return fmt::format(
+      "no controller{} is heard on {}; start pmg_controller, or give --lcm-url the address that it names",
+      robot.empty() ? "" : fmt::format(" named \"{}\"", robot), url);
+}
+
 }  // namespace pmg::ops

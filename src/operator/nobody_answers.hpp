@@ -1,4 +1,4 @@
-// Of a name that no controller answers to.
+// Of silence: no controller is heard, or none answers to a name.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace pmg::ops {
 /// "no controller of this name answers on URL; heard: z1", for one of those may be meant.
 std::string nobody_answers(const OperatorSource& source);
 
-/// What to do where no controller is heard at all.
-inline constexpr const char* kStartOne = "start pmg_controller, or give --lcm-url the address that it names";
+/// Where no controller is heard at all, or none of this name, and what to do.
+std::string nobody_heard(const std::string& url, const std::string& robot = "");
 
 }  // namespace pmg::ops
