@@ -31,7 +31,7 @@ Examples:
   pmg_sil --robot out/stances --scenario out/stances/scenario.yaml --motor hidden.yaml --out out/zero_run
   pmg_calibrate_zero out/zero_run --robot z1 --out out/zero
 
-Exit codes: 0 every joint between soles and IMU is calibrated, 1 some are not observable, the poses
+Exit codes: 0 every joint between soles and IMU is calibrated, 1 some are known roughly or not at all, the poses
 disagree or the iteration did not converge (the first line says which), 2 bad input or output, 130 interrupted (what was found until then is kept).)";
 
 struct Arguments {

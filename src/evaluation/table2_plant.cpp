@@ -187,7 +187,7 @@ std::vector<FoundOffset> calibrated_offsets(const sim::ActuatorsByJoint& plant, 
   const zero::ZeroCalibration found = zero::calibrate_zero(robot, zero::read_still_poses({folder / "log.lcm"}, robot));
   std::vector<FoundOffset> offsets;
   for (std::size_t i = 0; i < found.joints.size(); ++i) {
-    if (found.observable[i])
+    if (found.known[i] != zero::Known::kNo)
       offsets.push_back({robot.joint_index.name(found.joints[i]), -found.z_rad[static_cast<Eigen::Index>(i)]});
   }
   return offsets;

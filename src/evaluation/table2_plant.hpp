@@ -46,7 +46,8 @@ sim::ActuatorsByJoint calibrated_motors(const sim::ActuatorsByJoint& plant, cons
                                         const Gains& gains, unsigned seed);
 
 /// Zero calibration (paper III-C.2, eq. 21 to 25). The plant takes the stances of pmg_calibrate_zero --make-stances,
-/// steadied by the gantry; its log is evaluated. Returns the observable offsets (reading minus true angle) by joint.
+/// steadied by the gantry; its log is evaluated. Returns the offsets (reading minus true angle) of the
+/// joints whose zero points are known well or roughly.
 /// All files are below folder. After an interruption it returns nothing.
 struct FoundOffset {
   std::string joint;

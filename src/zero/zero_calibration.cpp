@@ -212,12 +212,16 @@ void find_observability(ZeroCalibration& found, Alignment& alignment, const Shar
   const Eigen::MatrixXd covariance =
       precision.ldlt().solve(Eigen::MatrixXd::Identity(count + kShared, count + kShared)).topLeftCorner(count, count);
   found.deviation_rad = covariance.diagonal().cwiseSqrt();
-  found.observable.clear();
-  for (const double deviation : found.deviation_rad) found.observable.push_back(deviation <= options.observable_rad);
+  found.known.clear();
+  for (const double deviation_rad : found.deviation_rad) {
+    found.known.push_back(deviation_rad <= options.well_rad      ? Known::kWell
+                          : deviation_rad <= options.roughly_rad ? Known::kRoughly
+                                                                 : Known::kNo);
+  }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(covariance);
   for (Eigen::Index i = count; i-- > 0;) {
     const double deviation = std::sqrt(axes.eigenvalues()[i]);
-    if (deviation <= options.observable_rad) break;
+    if (deviation <= options.well_rad) break;
     found.blind.push_back({deviation, direction_text(axes.eigenvectors().col(i), alignment.joints(), robot)});
   }
 }

@@ -29,8 +29,13 @@ struct ZeroOptions {
   double expected_offset_rad = 0.1;  ///< prior of a zero point
   double least_load = 0.1;           ///< share of the weight on a sole that stands
   double least_inside_m = 0.01;      ///< of the centre of pressure from the sole's edge when the sole lies flat
-  double observable_rad = 0.002;     ///< a zero point is observable when one standard deviation is at most this
+  // What a zero point's standard deviation may be at most.
+  double well_rad = 0.002;     ///< known well
+  double roughly_rad = 0.005;  ///< known roughly: worth applying, since zero points of assembled joints are out by tens of mrad
 };
+
+/// How well the poses determine a joint's zero point. Zero points that are known well or roughly are applied.
+enum class Known { kNo, kRoughly, kWell };
 
 /// Result of one pose.
 struct ZeroPose {
@@ -51,7 +56,7 @@ struct ZeroCalibration {
   std::vector<int> joints;        ///< between soles and IMU; no other joint is observable
   Eigen::VectorXd z_rad;          ///< correction to add to the reading, one per entry of joints
   Eigen::VectorXd deviation_rad;  ///< one standard deviation, given the options' uncertainties
-  std::vector<bool> observable;
+  std::vector<Known> known;
   Eigen::Vector2d imu_tilt_rad = Eigen::Vector2d::Zero();  ///< of its mounting, about its x and y
   /// Of soles and ground: pitch and roll [rad/Nm], height [m/N].
   Eigen::Vector3d give = Eigen::Vector3d::Zero();

@@ -36,9 +36,32 @@ ordered_json pose_json(const StillPose& pose, const ZeroPose& judged) {
 }
 
 std::string verdict_text(const ZeroResults& results) {
-  const auto observed = std::ranges::count(results.found.observable, true);
-  return fmt::format("Zero points of {} joints from {} poses; {} of {} joints can't be told", observed,
-                     results.found.used(), unobserved_joints(results).size(), results.robot->joints.size());
+  const auto without = std::ranges::count(results.found.known, Known::kNo);
+  return fmt::format("Zero points of {} joints from {} poses; {} of {} joints can't be told",
+                     std::ssize(results.found.known) - without, results.found.used(),
+                     unobserved_joints(results).size(), results.robot->joints.size());
+}
+
+/// The largest standard deviation of a zero point that is known roughly [rad].
+double worst_rough_rad(const ZeroCalibration& found) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < found.known.size(); ++i) {
+    if (found.known[i] == Known::kRoughly)
+      worst = std::max(worst, found.deviation_rad[static_cast<Eigen::Index>(i)]);
+  }
+  return worst;
+}
+
+/// "well", "roughly", "no": the word in zero.json.
+const char* name(Known known) {
+  constexpr const char* kNames[] = {"no", "roughly", "well"};
+  return kNames[static_cast<int>(known)];
+}
+
+/// In a line or table row of a joint; "" where all is well.
+const char* remark(Known known) {
+  constexpr const char* kRemarks[] = {"can't be told", "known roughly", ""};
+  return kRemarks[static_cast<int>(known)];
 }
 
 void show_offsets(pages::Page& page, const ZeroResults& results) {
@@ -54,8 +77,8 @@ void show_offsets(pages::Page& page, const ZeroResults& results) {
     bars.sets[0].values.push_back(1e3 * z);
     bars.sets[0].intervals.push_back({1e3 * (z - 2.0 * deviation), 1e3 * (z + 2.0 * deviation)});
     table.rows.push_back({joint_name(results, i), fmt::format("{:+.4f}", z), fmt::format("{:.4f}", deviation),
-                          results.found.observable[i] ? fmt::format("{:+.4f}", -z) : "",
-                          results.found.observable[i] ? "" : "not observable"});
+                          results.found.known[i] == Known::kNo ? "" : fmt::format("{:+.4f}", -z),
+                          remark(results.found.known[i])});
   }
   page.bars(bars);
   page.table(table);
@@ -119,7 +142,8 @@ void show_convergence(pages::Page& page, const ZeroResults& results) {
 
 sim::ActuatorsByJoint with_zero_offsets(sim::ActuatorsByJoint actuators, const ZeroResults& results) {
   for (std::size_t i = 0; i < results.found.joints.size(); ++i) {
-    if (results.found.observable[i]) actuators[joint_name(results, i)].sensor.zero_offset_rad = -z_rad(results, i);
+    if (results.found.known[i] != Known::kNo)
+      actuators[joint_name(results, i)].sensor.zero_offset_rad = -z_rad(results, i);
   }
   return actuators;
 }
@@ -134,7 +158,7 @@ std::vector<UnobservedJoint> unobserved_joints(const ZeroResults& results) {
       continue;
     }
     const auto i = static_cast<std::size_t>(place - results.found.joints.begin());
-    if (!results.found.observable[i]) {
+    if (results.found.known[i] == Known::kNo) {
       unobserved.push_back({name, fmt::format("these poses leave it uncertain by {:.4f} rad (one standard deviation)",
                                               deviation_rad(results, i))});
     }
@@ -151,10 +175,14 @@ work::Worth worth_of(const ZeroResults& results) {
                fmt::format("not converged in {} iterations", found.steps_rad.size()));
   worth.add_if(!(found.weighted_rms <= kMostWeightedRms), work::Grade::kOffItsData,
                fmt::format("the poses disagree by {:.2g} times what was expected", found.weighted_rms));
-  const auto unobserved = std::ranges::count(found.observable, false);
-  worth.add_if(
-      unobserved > 0, work::Grade::kPartial,
-      fmt::format("{} of {} joints between the soles and the IMU can't be told", unobserved, found.observable.size()));
+  const auto without = std::ranges::count(found.known, Known::kNo);
+  worth.add_if(without > 0, work::Grade::kPartial,
+               fmt::format("{} of {} joints between the soles and the IMU can't be told", without, found.known.size()));
+  const auto roughly = std::ranges::count(found.known, Known::kRoughly);
+  worth.add_if(roughly > 0, work::Grade::kPartial,
+               fmt::format("{} of {} joints between the soles and the IMU are known roughly: one standard deviation "
+                           "is up to {:.1f} mrad, asked {:.1f}; a second calibration with these zero points knows more",
+                           roughly, found.known.size(), 1e3 * worst_rough_rad(found), 1e3 * results.options.well_rad));
   return worth;
 }
 
@@ -183,7 +211,7 @@ ordered_json zero_json(const ZeroResults& results) {
     json["joints"][joint_name(results, i)] = {{"z_rad", z_rad(results, i)},
                                               {"zero_offset_rad", -z_rad(results, i)},
                                               {"deviation_rad", deviation_rad(results, i)},
-                                              {"observable", static_cast<bool>(found.observable[i])}};
+                                              {"known", name(found.known[i])}};
   }
   for (const UnobservedJoint& joint : unobserved_joints(results)) json["not_observable"][joint.name] = joint.why;
   for (const BlindDirection& blind : found.blind)
@@ -216,8 +244,9 @@ pages::Page zero_report(const ZeroResults& results) {
 std::vector<std::string> zero_text(const ZeroResults& results) {
   std::vector<std::string> lines;
   for (std::size_t i = 0; i < results.found.joints.size(); ++i) {
+    const std::string after = remark(results.found.known[i]);
     lines.push_back(fmt::format("{:24} z {:+.4f} +- {:.4f} rad{}", joint_name(results, i), z_rad(results, i),
-                                deviation_rad(results, i), results.found.observable[i] ? "" : "   (not observable)"));
+                                deviation_rad(results, i), after.empty() ? "" : "   (" + after + ")"));
   }
   for (const BlindDirection& blind : results.found.blind)
     lines.push_back(fmt::format("hardly seen: {} (+- {:.4f} rad)", blind.text, blind.deviation_rad));

@@ -20,8 +20,8 @@ struct ZeroResults {
   bool interrupted = false;
 };
 
-/// (actuators, results) => (actuators with sensor.zero_offset_rad = -z, reading minus true angle, at the observable
-/// joints). -z replaces an actuator's earlier offset: readings of poses are raw, so z corrects the whole offset.
+/// (actuators, results) => (actuators with sensor.zero_offset_rad = -z, reading minus true angle, at the joints whose
+/// zero points are known well or roughly). -z replaces an actuator's earlier offset: readings of poses are raw, so z corrects the whole offset.
 sim::ActuatorsByJoint with_zero_offsets(sim::ActuatorsByJoint actuators, const ZeroResults& results);
 
 /// A joint whose zero point the poses do not determine, with the reason.
@@ -31,7 +31,7 @@ struct UnobservedJoint {
 std::vector<UnobservedJoint> unobserved_joints(const ZeroResults& results);
 
 /// Interrupted; off its data, where the poses disagree by more than kMostWeightedRms; missed, where the iteration did
-/// not converge; partial, where a joint between soles and IMU can't be told.
+/// not converge; partial, where the zero point of a joint between soles and IMU is known roughly or not at all.
 work::Worth worth_of(const ZeroResults& results);
 inline constexpr double kMostWeightedRms = 3.0;  ///< of what was expected: three standard deviations
 

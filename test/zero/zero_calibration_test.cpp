@@ -85,7 +85,7 @@ TEST(ZeroCalibration, FindsTheZeroPointOfEveryLegJoint) {
   const ZeroCalibration found = calibrate_zero(z1(), all_stances(offset));
   EXPECT_TRUE(found.converged);
   EXPECT_EQ(found.used(), found.poses.size());
-  EXPECT_THAT(found.observable, Each(true));
+  EXPECT_THAT(found.known, Each(Known::kWell));
   EXPECT_LT((found.z_rad + offset).cwiseAbs().maxCoeff(), kPull_rad) << (found.z_rad + offset).transpose();
 }
 
@@ -129,7 +129,7 @@ TEST(ZeroCalibration, SaysWhatStandingStillWithBothLegsAlikeCantTell) {
     poses.push_back(seen({"both alike", drop_m, 0.0, 0.0, {}}, leg_joints(), Eigen::VectorXd::Zero(12)));
   }
   const ZeroCalibration found = calibrate_zero(z1(), poses);
-  EXPECT_THAT(found.observable, Not(Contains(true)));
+  EXPECT_THAT(found.known, Not(Contains(Known::kWell)));
   ASSERT_FALSE(found.blind.empty());
   EXPECT_GT(found.blind.front().deviation_rad, 0.05) << "half of what was expected, or more, is left";
   EXPECT_LT(found.z_rad.cwiseAbs().maxCoeff(), 1e-3) << "what isn't seen isn't changed";
@@ -184,8 +184,29 @@ TEST(ZeroWorth, GreenOnlyWhereTheIterationEndedAndThePosesAgree) {
   apart.found.converged = false;
   expect_everywhere(apart, "MISSED: ", work::Grade::kMissed);
   apart = whole;
-  apart.found.observable.front() = false;
+  apart.found.known.front() = Known::kNo;
   expect_everywhere(apart, "PARTIAL: ", work::Grade::kPartial);
+}
+
+// Fewer poses tell less. What they tell roughly is far nearer the truth than nothing, so it is applied, and said.
+TEST(ZeroWorth, WhatIsKnownRoughlyIsAppliedAndSaid) {
+  const Eigen::VectorXd offset = hidden_offsets(leg_joints().size());
+  std::vector<StillPose> poses = all_stances(offset);
+  poses.resize(5);
+  const ZeroResults results = results_of(poses);
+  ASSERT_THAT(results.found.known, Contains(Known::kRoughly)) << results.found.deviation_rad.transpose();
+  const sim::ActuatorsByJoint applied = with_zero_offsets({}, results);
+  const std::string page = zero_report(results).html();
+  for (std::size_t i = 0; i < leg_joints().size(); ++i) {
+    const auto place = static_cast<Eigen::Index>(i);
+    const std::string& joint = z1().joint_index.name(leg_joints()[i]);
+    ASSERT_EQ(applied.contains(joint), results.found.known[i] != Known::kNo) << joint;
+    if (results.found.known[i] == Known::kNo) continue;
+    EXPECT_NEAR(applied.at(joint).sensor.zero_offset_rad, offset[place], 3.0 * results.found.deviation_rad[place]);
+  }
+  EXPECT_THAT(page, HasSubstr("known roughly"));
+  EXPECT_EQ(zero_json(results)["worth"], "partial");
+  EXPECT_THAT(zero_remarks(results).front(), HasSubstr("are known roughly: one standard deviation is up to"));
 }
 
 // Such legs stand on no ground: poses are judged before they are used.
