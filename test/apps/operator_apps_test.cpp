@@ -200,7 +200,7 @@ TEST_F(OperatorApps, WithoutAControllerThatIsSaid) {
                 HasSubstr("no controller is heard on udpm://239.255.76.67:7667?ttl=0; start pmg_controller"));
     const test::Finished named = run("pmg_send stand --robot z9 --timeout 0.3");
     EXPECT_EQ(named.exit_code, 1);
-    EXPECT_THAT(named.err, HasSubstr("no controller of this name answers"));
+    EXPECT_THAT(named.err, AllOf(HasSubstr("no controller of this name answers"), HasSubstr("; start pmg_controller")));
   });
 }
 
