@@ -133,6 +133,8 @@ std::vector<calib::FitParameter> parameters(const Arguments& arguments, const be
     }
     parameter->lower = number(range.substr(0, colon), text);
     parameter->upper = number(range.substr(colon + 1), text);
+    if (!(parameter->lower < parameter->upper))
+      throw std::invalid_argument(fmt::format("--range {}: expected LOWER below UPPER", text));
   }
   return found;
 }
@@ -226,7 +228,8 @@ int calibrate(const Arguments& arguments) {
   if (arguments.bench.empty()) throw std::invalid_argument("BENCH is missing (--help shows an example)");
   apps::ProgressLine progress;
   const bench::Bench as_recorded = bench::read_bench(arguments.bench);
-  parameters(arguments, as_recorded);  // refuses a wrong name before the work
+  parameters(arguments, as_recorded);  // refuses a wrong name before the work, as the next line does
+  start_model(arguments, as_recorded);
   for (const std::string& word : arguments.also) {
     const std::string today = effects::fit_word(word).today;
     if (!today.empty()) std::cerr << fmt::format("--also {}: the word is {} now\n", word, today);

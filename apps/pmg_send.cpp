@@ -158,12 +158,10 @@ class Session {
       show_progress(robot, drive);
     }
     const bool drove = progress == ops::Progress::kReached;
-    const std::string drove_text =
-        drove ? fmt::format("drove for {:.1f} s{}{}", drive.driven_s(), limited_.empty() ? "" : "; ", limited_)
-              : drive.text();
-    if (!lead) return conclude(robot, progress, drove_text, drive.driven_s());
+    if (!lead) return conclude(robot, progress, drive.last_words(), drive.driven_s());
     if (drove && !led) progress = ops::Progress::kFailed;
-    return conclude(robot, progress, arms_text.empty() ? drove_text : drove_text + "; " + arms_text, drive.driven_s());
+    return conclude(robot, progress, drive.last_words() + (arms_text.empty() ? "" : "; " + arms_text),
+                    drive.driven_s());
   }
 
   int conclude(const std::string& robot, ops::Progress progress, const std::string& text, double elapsed_s) {

@@ -91,6 +91,9 @@ BenchLoad read_load(ConfigReader reader, bool hangs) {
   const auto inertia = known_number(reader, "inertia_kg_m2"), gravity = known_number(reader, "gravity_Nm");
   load.inertia_unknown = reader.has("inertia_kg_m2") && !inertia;
   load.gravity_unknown = hangs && reader.has("gravity_Nm") && !gravity;
+  if (hangs && (load.inertia_unknown || load.gravity_unknown) && load.length_m == 0.0)
+    reader.fail(load.gravity_unknown ? "gravity_Nm" : "inertia_kg_m2", "is unknown, and so is where the mass sits",
+                "length_m, about: the fit finds factors on the point mass that it makes of mass_kg and length_m");
   const double point = load.length_m > 0.0 ? load.mass_kg * load.length_m * load.length_m : load.mass_kg;
   load.load.inertia_kg_m2 = inertia.value_or(point);
   load.load.hangs_at_rad = reader.optional<double>("hangs_at_rad", 0.0, files::any_number());

@@ -24,8 +24,9 @@ struct Confidence {
 ///
 ///   sqrt(A^-1 B A^-1 + d d^T), with fitting::cluster_robust_covariance's A and B,
 /// where d = A^-1 J^T r is the Gauss-Newton step that a finished fit doesn't have left, the largest over J by the fit's
-/// finite differences and by those 5 and 20 times as long. Dry friction that sticks in one rollout and slips in the
-/// next moves readings by jumps: short differences take jumps for information, and a search ends in one of the narrow
+/// finite differences and by those 5 and 20 times as long. A parameter moves the step in which a drive leaves its
+/// torque limit, and with the drive's damping that step ends at another speed: readings move by jumps, up to 2 mrad in
+/// one run of a knee of 120 Nm. Short differences take jumps for information, and a search ends in one of the narrow
 /// valleys between them. Differences over many jumps see what lies below. A deviation beyond a quarter of the range of
 /// the search is none: the derivatives say nothing so far away.
 std::vector<Confidence> confidence(const FitProblem& problem, const std::vector<double>& point, unsigned threads);

@@ -55,7 +55,9 @@ std::optional<fs::path> policy_file(const std::string& name, const char* named_b
   if (name == "none") return std::nullopt;
   fs::path file = place_of_policy(name, robot);
   if (!fs::exists(file)) {
-    const std::string meant = files::nearest_name(name, policy_names(robot));
+    const fs::path told(name);
+    const bool of_robot = told.extension() == ".onnx" && !told.has_parent_path();  // pmg.onnx for pmg
+    const std::string meant = files::nearest_name(of_robot ? told.stem().string() : name, policy_names(robot));
     throw std::invalid_argument(
         meant.empty()
             ? fmt::format("{} {}: there is no {}; expected the name of a policy there, an ONNX file or its descriptor "

@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "calib/fit_problem.hpp"
 #include "data_faults/column_checks.hpp"
 #include "fitting/statistics.hpp"
 
@@ -282,7 +283,8 @@ std::vector<DataFault> gain_fault(const Examined& e) {
   if (!found.empty() || e.bench().law == bench::DriveLaw::kServoVoltage) return found;
   found = gain_fault_of(e, &RunFactors::kd);
   if (!found.empty()) return found;
-  // All gains: beyond what a drive's gain is off by.
+  // All gains: beyond what a drive's gain is off by. Without known loads nothing tells the gain from them.
+  if (!calib::unknown_loads(e.bench()).empty()) return {};
   const double factor = e.fitted().model.actuator.drive.kp_scale / e.bench().known.drive.kp_scale;
   if (e.bench().law != bench::DriveLaw::kPositionPd ||
       !beyond(factor, 1.0 + 0.5 * (e.options().least_common_gain - 1.0)))

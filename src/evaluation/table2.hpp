@@ -60,9 +60,14 @@ struct Walk {
 };
 
 struct ConfigurationResult {
-  Estimate imitation_rad, sim_to_real_rad;  ///< over plants
+  Estimate imitation_rad = mean_interval({}), sim_to_real_rad = mean_interval({});  ///< over the plants that have both
   std::vector<double> imitation_of_plant_rad, sim_to_real_of_plant_rad;
+  std::size_t robots_without_errors = 0;  ///< they, or their simulations, fell before there was a step to compare
   int robot_falls = 0, simulation_falls = 0;
+  void add(double imitation_rad, double sim_to_real_rad);  ///< a plant's errors; NaN: not measured
+  bool measured() const { return !imitation_of_plant_rad.empty(); }
+  bool fell_on_the_way() const { return robot_falls > static_cast<int>(robots_without_errors); }
+  std::size_t robots() const { return imitation_of_plant_rad.size() + robots_without_errors; }
 };
 
 /// One plant and its calibration.
@@ -82,8 +87,8 @@ struct Table2 {
   std::vector<std::string> joints;  ///< compared joints
   std::array<ConfigurationResult, kConfigurations> results;
   std::array<std::vector<double>, kConfigurations> shown_robot, shown_simulation;  ///< left knee of plant 1
-  double ratio() const;  ///< sim-to-real error: full calibration over baseline
-  bool all_reached() const;
+  double ratio() const;      ///< sim-to-real error: full calibration over baseline; NaN where one has none
+  bool all_reached() const;  ///< the result holds, and nothing of it is missing
 };
 inline constexpr double kAskedRatio = 0.53;  ///< the paper's 0.0414 / 0.0781
 

@@ -29,6 +29,23 @@ std::vector<std::string> parts(std::string_view name) {
   return found;
 }
 
+/// ("knee", names) => {"left_knee", "right_knee"}: those that have it as a word or as words between others; none if
+/// these are more than four, or if it has less than three letters.
+std::vector<std::string> names_with(std::string_view word, const std::vector<std::string>& names) {
+  constexpr std::size_t kShortest = 3, kMost = 4;
+  const auto apart = [](const std::string& name, std::size_t place) {
+    return place >= name.size() || std::isalnum(static_cast<unsigned char>(name[place])) == 0;
+  };
+  std::vector<std::string> found;
+  for (const std::string& name : names) {
+    const auto begin = std::search(name.begin(), name.end(), word.begin(), word.end(), same);
+    const auto place = static_cast<std::size_t>(begin - name.begin());
+    if (begin != name.end() && (place == 0 || apart(name, place - 1)) && apart(name, place + word.size()))
+      found.push_back(name);
+  }
+  return word.size() < kShortest || found.size() > kMost ? std::vector<std::string>{} : found;
+}
+
 }  // namespace
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -85,6 +102,8 @@ std::string expected_name(std::string_view name, const std::vector<std::string>&
   if (const std::string nearest = nearest_name(name, names); !nearest.empty()) {
     return fmt::format("did you mean {}?", nearest);
   }
+  if (const auto with = names_with(name, names); !with.empty())
+    return fmt::format("did you mean {}?", fmt::join(with, " or "));
   if (names.empty()) return "none is known here";
   if (names.size() == 1) return "expected " + names.front();
   return fmt::format("expected one of {}", fmt::join(names, ", "));

@@ -20,8 +20,8 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 /// The nearest file of the same folder and ending; empty if none is near.
 std::filesystem::path nearest_file(const std::filesystem::path& file);
 
-/// The end of an error message after an unknown name: "did you mean NAME?", or if none is near "expected one of A, B,
-/// C".
+/// The end of an error message after an unknown name: "did you mean NAME?" ("left_NAME or right_NAME": those with it as
+/// a word, if they are few), or if none is near "expected one of A, B, C".
 std::string expected_name(std::string_view name, const std::vector<std::string>& names);
 
 }  // namespace pmg::files

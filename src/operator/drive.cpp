@@ -1,5 +1,7 @@
 #include "operator/drive.hpp"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "operator/way_up.hpp"
@@ -56,6 +58,11 @@ Progress Drive::step(const RobotNews* news) {
     return end(driver_.text());
   }
   return Progress::kPending;
+}
+
+std::string Drive::last_words() const {
+  if (!text_.empty()) return text_;
+  return fmt::format("drove for {:.1f} s{}{}", driven_s_, limited().empty() ? "" : "; ", limited());
 }
 
 void Drive::note_driven() {

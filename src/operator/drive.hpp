@@ -61,7 +61,9 @@ class Drive {
   bool driving() const noexcept { return driver_.driving(); }
   double driven_s() const noexcept { return driven_s_; }
   std::string waits_for() const { return driver_.waits_for(); }              ///< as RobotDriver's
-  const std::string& limited() const noexcept { return driver_.limited(); }  ///< likewise
+  const std::string& limited() const noexcept { return driver_.limited(); }  ///< likewise, also after the end
+  /// At the end: "drove for 2.0 s; limited: vx 50 -> 0.5 m/s (range -0.3 to 0.5)", or why it failed.
+  std::string last_words() const;
 
  private:
   std::int64_t now_ns() const { return source_.clock().now_ns(); }

@@ -255,7 +255,11 @@ std::string Page::html() const {
 void Page::write(const std::filesystem::path& file) const {
   std::ofstream out(file, std::ios::binary);
   out << html();
-  if (!out.flush()) throw std::runtime_error(file.string() + ": can't be written");
+  if (out.flush()) return;
+  const std::filesystem::path folder = file.parent_path();
+  throw std::runtime_error(
+      file.string() + ": can't be written" +
+      (folder.empty() || std::filesystem::is_directory(folder) ? "" : ": there is no folder " + folder.string()));
 }
 
 }  // namespace pmg::pages

@@ -21,7 +21,9 @@ fs::path made(const fs::path& directory) {
   std::error_code error;
   fs::create_directories(directory, error);
   if (!fs::is_directory(directory))
-    throw std::runtime_error(directory.string() + ": the log's folder can't be made: " + error.message());
+    throw std::runtime_error(directory.string() + (fs::exists(directory)
+                                                       ? ": a file has this name; expected a folder, or a new name"
+                                                       : ": the log's folder can't be made: " + error.message()));
   return directory;
 }
 

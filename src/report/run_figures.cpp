@@ -170,7 +170,10 @@ nlohmann::ordered_json run_json(const RunSeries& run) {
       {"timing_us", {{"tick", times_json(run.timing.tick_us)}, {"wake", times_json(run.timing.wake_us)}}},
       {"lost_ticks", run.lost_ticks},
       {"problems", run.problems}};
-  add_to(json, worth_of_reading(run));
+  work::Worth whole = worth_of_reading(run);
+  whole.add(worth_of(run));
+  add_to(json, whole);
+  add_to(json["reading"], worth_of_reading(run));
   return json;
 }
 

@@ -35,6 +35,7 @@ work::Worth worth_of(const RunSeries& run);
 /// One sentence: policy, duration, end, what was cut of its command, tracking and limits.
 std::string verdict(const RunSeries& run);
 
+/// The run's figures. `worth` is that of the whole, as its line of the page; `reading` is that of the reading alone.
 nlohmann::ordered_json run_json(const RunSeries& run);
 
 }  // namespace pmg::report

@@ -323,7 +323,11 @@ RunSeries read_run(const fs::path& log, const work::Progress& progress) {
   }
   run.interrupted = interrupted;
   if (run.state.t_s.empty() && run.status.t_s.empty() && run.reference.t_s.empty() && !interrupted) {
-    throw std::runtime_error(log.string() + ": no log of a run: it has no STATE, REFERENCE or STATUS that can be read");
+    const std::filesystem::path meant = log.parent_path() / "log.lcm";
+    throw std::runtime_error(log.string() + ": no log of a run: it has no STATE, REFERENCE or STATUS that can be read" +
+                             (log.filename() != meant.filename() && std::filesystem::exists(meant)
+                                  ? "; did you mean " + meant.string() + "?"
+                                  : ""));
   }
   if (run.timing.ticks == 0) {
     read_timing_csv((fs::is_directory(log) ? log : log.parent_path()) / "timing.csv", run);

@@ -107,19 +107,27 @@ void show_observability(pages::Page& page, const ZeroResults& results) {
   });
 }
 
+/// A log's name stands in each row only where there are several.
 void show_poses(pages::Page& page, const ZeroResults& results) {
-  pages::Table table{.header = {"log", "from [s]", "to [s]", "IMU misaligned by [mrad]", "soles uneven by [mm]",
-                                "load left, right [N]", "pressure inside the edge [mm]", ""},
+  const std::vector<StillPose>& poses = *results.poses;
+  const bool several = std::ranges::any_of(poses, [&](const StillPose& pose) { return pose.log != poses.front().log; });
+  if (!several && !poses.empty()) page.paragraph("All in " + poses.front().log + ".");
+  pages::Table table{.header = {"from [s]", "to [s]", "IMU misaligned by [mrad]", "soles uneven by [mm]",
+                                "load left, right [N]", "pressure inside the edge [mm]", "used, or why not"},
                      .rows = {}};
+  if (several) table.header.insert(table.header.begin(), "log");
   for (std::size_t k = 0; k < results.found.poses.size(); ++k) {
-    const StillPose& pose = (*results.poses)[k];
     const ZeroPose& judged = results.found.poses[k];
-    table.rows.push_back(
-        {pose.log, fmt::format("{:.1f}", pose.from_s), fmt::format("{:.1f}", pose.to_s),
-         fmt::format("{:.2f}", 1e3 * judged.misalignment_rad), fmt::format("{:.2f}", 1e3 * judged.height_miss_m),
-         fmt::format("{:.0f}, {:.0f}", judged.load[kLeft].force_N, judged.load[kRight].force_N),
-         fmt::format("{:.0f}, {:.0f}", 1e3 * judged.load[kLeft].inside_m, 1e3 * judged.load[kRight].inside_m),
-         judged.used ? "used" : judged.why_not});
+    std::vector<std::string> row = {
+        fmt::format("{:.1f}", poses[k].from_s),
+        fmt::format("{:.1f}", poses[k].to_s),
+        fmt::format("{:.2f}", 1e3 * judged.misalignment_rad),
+        fmt::format("{:.2f}", 1e3 * judged.height_miss_m),
+        fmt::format("{:.0f}, {:.0f}", judged.load[kLeft].force_N, judged.load[kRight].force_N),
+        fmt::format("{:.0f}, {:.0f}", 1e3 * judged.load[kLeft].inside_m, 1e3 * judged.load[kRight].inside_m),
+        judged.used ? "used" : judged.why_not};
+    if (several) row.insert(row.begin(), poses[k].log);
+    table.rows.push_back(std::move(row));
   }
   page.table(table);
 }

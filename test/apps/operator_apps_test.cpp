@@ -186,16 +186,21 @@ TEST_F(OperatorApps, WithoutAMulticastRouteTheWayOutIsSaid) {
 TEST_F(OperatorApps, WithoutAControllerThatIsSaid) {
   PMG_IN_PRIVATE_NETWORK(Multicast::kOnLoopback, [&] {
     for (const char* command :
-         {"pmg_send stop --timeout 0.3", "pmg_send stand --timeout 0.3", "pmg_watch --once --timeout 0.3"}) {
+         {"pmg_send stop --timeout 0.3", "pmg_send stand --timeout 0.3", "pmg_send lift --timeout 0.3",
+          "pmg_send walk --vx 0.2 --for 1 --timeout 0.3", "pmg_watch --once --timeout 0.3"}) {
       const test::Finished unheard = run(command);
       EXPECT_EQ(unheard.exit_code, 1) << command;
       EXPECT_THAT(unheard.err,
                   HasSubstr("no controller is heard on udpm://239.255.76.67:7667?ttl=0; start pmg_controller"))
           << command;
     }
+    const test::Finished asked = run("pmg_send stand --json --timeout 0.3");
+    EXPECT_EQ(asked.exit_code, 1);
+    EXPECT_THAT(nlohmann::json::parse(asked.out)["text"].get<std::string>(),
+                HasSubstr("no controller is heard on udpm://239.255.76.67:7667?ttl=0; start pmg_controller"));
     const test::Finished named = run("pmg_send stand --robot z9 --timeout 0.3");
     EXPECT_EQ(named.exit_code, 1);
-    EXPECT_THAT(named.err, HasSubstr("no controller of this name answers"));
+    EXPECT_THAT(named.err, AllOf(HasSubstr("no controller of this name answers"), HasSubstr("; start pmg_controller")));
   });
 }
 
@@ -218,6 +223,8 @@ TEST_F(OperatorApps, ARealControllerStandsWalksAndStops) {
     }
     EXPECT_EQ(walk.exit_code, 0) << walk.err;
     EXPECT_THAT(walk.out, HasSubstr("z1: stand (drove for 0.5 s)"));
+    walk = run("pmg_send walk --vx 50 --for 0.5");
+    EXPECT_THAT(walk.out + walk.err, HasSubstr("; limited: vx 50 -> ")) << "in its last words";
 
     const std::unique_ptr<Background> driver = walking_driver("z1");
     const test::Finished stop = run("pmg_send stop");

@@ -69,6 +69,8 @@ TEST_F(PmgCalibrateMotor, RefusesBadInputInOneLineAndWritesNothing) {
       {{"--set", "friction.coulomb_Nm=some"}, "isn't a number"},
       {{"--set", "friction.colour=1"}, "no actuator parameter"},
       {{"--range", "friction.coulomb_Nm=0:1"}, "that is fitted"},
+      {{"--range", "drive.kp_scale=2:1"}, "expected LOWER below UPPER"},
+      {{"--set", "armature=1"}, "did you mean transmission.armature_kg_m2?"},
       {{"--only"}, "nothing to fit"},
   };
   for (const auto& [arguments, message] : bad) {

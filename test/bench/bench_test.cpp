@@ -167,6 +167,17 @@ TEST_F(BenchFiles, WithAnUnknownKeyAreRefused) {
   EXPECT_THAT(refusal(), AllOf(HasSubstr("bench.yaml:6"), HasSubstr("kpp_Nm_per_rad"), HasSubstr("unknown")));
 }
 
+TEST_F(BenchFiles, WithAnUnknownLoadWhoseMassSitsNowhereAreRefused) {
+  std::ifstream in(folder_ / "bench.yaml");
+  const std::string text((std::istreambuf_iterator<char>(in)), {});
+  const std::size_t begin = text.find("inertia_kg_m2: "), end = text.find('}', begin);
+  ASSERT_NE(begin, std::string::npos);
+  replace("bench.yaml", text.substr(begin, end - begin), "inertia_kg_m2: unknown, gravity_Nm: unknown");
+  EXPECT_EQ(refusal(), "accepted") << "as a point mass at length_m";
+  replace("bench.yaml", "length_m: 0.1, ", "");
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("bench.yaml:"), HasSubstr("is unknown"), HasSubstr("expected length_m")));
+}
+
 TEST_F(BenchFiles, WithALoadThatBenchYamlDoesntHaveAreRefused) {
   replace("runs.csv", "0.8,2\n", "0.8,2.5\n");
   EXPECT_THAT(refusal(), AllOf(HasSubstr("runs.csv:3"), HasSubstr("no such load")));

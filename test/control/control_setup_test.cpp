@@ -266,6 +266,17 @@ class ARobotOfTwoStyles : public ::testing::Test {
   std::filesystem::path own_clips_ = robot_.path() / "policies/person/clips";
 };
 
+TEST_F(ARobotOfTwoStyles, AFilesNameInPlaceOfAPolicysIsUnderstood) {
+  for (const char* name : {"persn", "person.onnx"}) {
+    try {
+      load_control(with(name));
+      ADD_FAILURE() << name;
+    } catch (const std::invalid_argument& error) {
+      EXPECT_NE(std::string(error.what()).find("did you mean person?"), std::string::npos) << error.what();
+    }
+  }
+}
+
 TEST_F(ARobotOfTwoStyles, RunsAPolicyOnTheClipsBesideIt) {
   const LoadedControl person = load_control(with("person")),
                       by_file = load_control(with((robot_.path() / "policies/person.onnx").string()));

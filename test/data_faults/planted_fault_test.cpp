@@ -100,6 +100,18 @@ INSTANTIATE_TEST_SUITE_P(DataFaults, PlantedFault, testing::ValuesIn(planted_cas
   return text;
 });
 
+TEST(PlantedFaults, NoGainIsWrongBesideLoadsThatNobodyKnows) {
+  constexpr unsigned kSeed = 3;
+  test::RandomBench made = position_pd(kSeed);
+  ASSERT_FALSE(test::plant("gain of all rows", kSeed, made.bench, made.runs).kind.empty());
+  ASSERT_EQ(find_data_faults(made.bench, made.runs, std::nullopt, {}, 1).size(), 1U);
+  bench::BenchLoad unknown;
+  unknown.inertia_unknown = unknown.gravity_unknown = true;
+  made.bench.loads = {unknown};
+  const std::vector<DataFault> found = find_data_faults(made.bench, made.runs, std::nullopt, {}, 1);
+  EXPECT_TRUE(found.empty()) << found.front().where << ": " << found.front().correction;
+}
+
 TEST(PlantedFaults, OneDoesNotHideAnother) {
   test::RandomBench made = test::random_bench(8);
   bench::correct(made.runs[2], {.columns = {bench::Column::kPosition}, .factor = -1.0});

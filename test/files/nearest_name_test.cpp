@@ -53,6 +53,18 @@ TEST(ExpectedName, SaysWhatIsThereWhenNothingIsNear) {
   EXPECT_EQ(expected_name("zzz", {"info"}), "expected info");
 }
 
+TEST(ExpectedName, WhatHasTheWordIsProposedWhereThatIsFew) {
+  const std::vector<std::string> joints = {"left_knee", "right_knee", "left_hip_yaw", "waist_yaw"};
+  EXPECT_EQ(expected_name("knee", joints), "did you mean left_knee or right_knee?");
+  EXPECT_EQ(expected_name("armature", {"transmission.armature_kg_m2", "drive.limit"}),
+            "did you mean transmission.armature_kg_m2?");
+  EXPECT_EQ(expected_name("kne", {"left_knee_a", "b"}), "expected one of left_knee_a, b") << "a part of a word is none";
+  EXPECT_EQ(expected_name("an", {"an_arm_b", "an_arm_c"}), "expected one of an_arm_b, an_arm_c") << "too short";
+  EXPECT_EQ(expected_name("tau", {"aa_tau", "bb_tau", "cc_tau", "dd_tau", "ee_tau"}),
+            "expected one of aa_tau, bb_tau, cc_tau, dd_tau, ee_tau")
+      << "too many";
+}
+
 TEST(NearestFile, LooksInTheSameFolderAtTheSameEnding) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "nearest_file";
   std::filesystem::create_directories(folder);

@@ -114,6 +114,24 @@ TEST_F(TakenCommandTest, WhatIsTakenAsAskedIsNotMentioned) {
   EXPECT_THAT(told(Command{{0.5 * robot_.robot.command_limits.upper[kVx]}}, 2.0), testing::IsEmpty());
 }
 
+TEST_F(TakenCommandTest, TheLastWordsOfADriveSayHowLongAndWhatWasTaken) {
+  const auto words = [&](const Command& asked, double seconds) {
+    Drive drive(source_, "biped", asked, {.duration_s = seconds, .climb = true});
+    Progress progress = Progress::kPending;
+    while (progress == Progress::kPending) {
+      network_.advance();
+      progress = drive.step(&board_.robots().at("biped"));
+    }
+    return drive.last_words();
+  };
+  EXPECT_EQ(words(Command{{0.2}}, 1.0), "drove for 1.0 s");
+  const double most = robot_.robot.command_limits.upper[kVx];
+  EXPECT_THAT(words(Command{{50.0}}, 2.0),
+              StartsWith(fmt::format("drove for 2.0 s; limited: vx 50 -> {:.3g} m/s (range ", most)));
+  EXPECT_THAT(words(Command{{50.0}}, 0.1),
+              AllOf(StartsWith("drove for 0.1 s; limited: vx 50 -> "), HasSubstr(" m/s so far (range ")));
+}
+
 TEST_F(TakenCommandTest, AShortDriveIsToldTooAtItsEnd) {
   const auto lines = told(Command{{50.0}}, 0.1);
   ASSERT_EQ(lines.size(), 1u);

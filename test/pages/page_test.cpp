@@ -77,6 +77,16 @@ TEST(Page, LoadsNothingFromAnywhere) {
   }
 }
 
+TEST(Page, AFolderThatIsMissingIsNamed) {
+  const auto file = std::filesystem::path(testing::TempDir()) / "no_such_folder" / "report.html";
+  try {
+    Page("a page").write(file);
+    FAIL() << "it was written";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("there is no folder " + file.parent_path().string()), std::string::npos);
+  }
+}
+
 TEST(Page, NamesNeverBecomeMarkup) {
   const std::string html = without_assets(full_page(kHostile).html());
   EXPECT_THAT(html, Not(HasSubstr("<img")));

@@ -244,6 +244,13 @@ TEST_F(RecorderTest, AFolderThatCannotBeMadeIsAnErrorAtTheStart) {
   RecorderOptions impossible = options();
   impossible.directory = folder_ / "file" / "logs";
   EXPECT_THROW(recorder(impossible), std::runtime_error);
+  impossible.directory = folder_ / "file";
+  try {
+    recorder(impossible);
+    ADD_FAILURE() << "a file is no folder";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("a file has this name; expected a folder, or a new name"));
+  }
   const test::FullDisk full;
   EXPECT_THROW(recorder(options()), std::runtime_error) << "nothing can be logged from the first tick on";
 }

@@ -204,6 +204,19 @@ TEST_F(RunReport, OfALogThatWasNotReadToItsEndNoLineIsGreen) {
       << "the log was read; what it shows is another thing";
 }
 
+TEST_F(RunReport, AFilesWorthIsThatOfItsRunAndTheReadingsStandsBesideIt) {
+  const nlohmann::ordered_json whole = run_json(run({})), faulted = run_json(run({.fault_at = 200}));
+  EXPECT_EQ(whole["worth"], "holds");
+  EXPECT_EQ(faulted["worth"], "missed") << "as its line of the page";
+  EXPECT_EQ(faulted["reservations"][0]["why"], "the robot faulted");
+  EXPECT_EQ(faulted["reading"]["worth"], "holds");
+  RunSeries cut = run({.fault_at = 200});
+  cut.problems = {"its end is missing"};
+  EXPECT_EQ(run_json(cut)["worth"], "missed");
+  EXPECT_EQ(run_json(cut)["reservations"].size(), 2U);
+  EXPECT_EQ(run_json(cut)["reading"]["worth"], "partial");
+}
+
 TEST_F(RunReport, SaysThatReadingWasInterrupted) {
   SmallLog{.ticks = 9000}.write(folder_ / "long.lcm");
   const RunSeries run = read_run(folder_ / "long.lcm", {.report = {}, .interrupted = [] { return true; }});

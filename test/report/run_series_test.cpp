@@ -143,6 +143,18 @@ TEST_F(RunSeriesTest, AnyChannelMayBeMissing) {
   EXPECT_THAT(read_run(write({.left_out = {"ROBOT_INFO"}})).problems, Contains(HasSubstr("who ran what is unknown")));
 }
 
+TEST_F(RunSeriesTest, AnotherFileOfTheRunsFolderIsRefusedWithTheLogsName) {
+  const fs::path log = write({}), other = log.parent_path() / "summary.json";
+  if (log.filename() != "log.lcm") fs::rename(log, log.parent_path() / "log.lcm");
+  std::ofstream(other) << "{}";
+  try {
+    read_run(other);
+    FAIL() << "it has no ticks";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("did you mean " + (log.parent_path() / "log.lcm").string() + "?"));
+  }
+}
+
 TEST_F(RunSeriesTest, ReadsWhatIsThereOfALogThatIsCutShort) {
   const fs::path log = write({});
   const auto whole = fs::file_size(log);
