@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "generator_core/allocation_count.hpp"
 #include "generator_core/synthetic_library.hpp"
 #include "pmg/clip_sampling.hpp"
 
@@ -141,6 +142,22 @@ TEST(HalfGain, ThatLeavesTheJointsRoomIsScaledToTheMargin) {
   // Phases between those of the table may come nearer by 3 mrad.
   EXPECT_GE(least, options.limit_margin_rad - 0.006);
   EXPECT_LE(least, options.limit_margin_rad + 0.02) << "scaled further than the joints need";
+}
+
+/// Also where the command is scaled down, which takes the longest.
+TEST(HalfGain, IsPlayedWithoutTheHeap) {
+  if (allocation_count() < 0) GTEST_SKIP() << "a sanitizer owns malloc";
+  ClipLibrary library = bent_library(3.0);
+  library.q_lower = library.q_stand.array() - 0.5;
+  library.q_upper = library.q_stand.array() + 0.5;
+  Generator generator(library, make_options());
+  generator.step(make_command(0.4, 0.1, 0), kDt_s);
+  const long before = allocation_count();
+  bool limited = false;
+  for (int tick = 0; tick < 500; ++tick)
+    limited = generator.step(make_command(0.4, 0.1, 0.2), kDt_s).command_limited || limited;
+  EXPECT_EQ(allocation_count(), before);
+  EXPECT_TRUE(limited);
 }
 
 TEST(HalfGain, WithOtherSamplesThanTheClipIsRefused) {
