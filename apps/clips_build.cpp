@@ -13,6 +13,7 @@
 #include "json_output.hpp"
 #include "model/clip_library_file.hpp"
 #include "model/clip_library_writer.hpp"
+#include "model/standing_posture.hpp"
 #include "retargeting/build_library.hpp"
 #include "shown_progress.hpp"
 
@@ -26,7 +27,10 @@ using retargeting::RetargetedClip;
 /// Files of another library would be read with the new ones.
 void expect_no_other_clips(const fs::path& out, const retargeting::LibraryRecipe& recipe) {
   std::set<std::string> made = {"bend", "lean", "squat", "inverse", "library"};
-  for (const retargeting::ClipRecipe& clip : recipe.clips) made.insert(clip.name);
+  for (const retargeting::ClipRecipe& clip : recipe.clips) {
+    made.insert(clip.name);
+    made.insert(model::half_gain_name(clip.name));
+  }
   for (const fs::path& file : model::clip_library_files(out)) {
     if (made.contains(file.stem().string())) continue;
     files::raise({file.string()}, "", "is no part of this library, and would be read with it",
@@ -137,8 +141,8 @@ CLI::App* add_build(CLI::App& app, BuildOptions& options) {
 
 int build(const BuildOptions& options,
           const std::function<void(const model::RobotModel&, const fs::path&)>& add_inverse) {
-  const model::RobotModel robot = model::load_robot(model::find_robot(options.robot));
   const retargeting::LibraryRecipe recipe = retargeting::read_library_recipe(options.recipe, options.recordings);
+  const model::RobotModel robot = model::load_robot_standing_as(options.robot, recipe.stands_as.value_or(""));
   model::require_writable(options.out);
   expect_no_other_clips(options.out, recipe);
   ProgressLine progress;

@@ -5,6 +5,7 @@
 #include "library_page/library_page.hpp"
 #include "model/clip_library_file.hpp"
 #include "model/robot_model.hpp"
+#include "model/standing_posture.hpp"
 #include "retargeting/library_review.hpp"
 #include "shown_progress.hpp"
 #ifdef PMG_SIL
@@ -32,7 +33,7 @@ struct Reviewed {
 };
 
 Reviewed reviewed(const ReportOptions& options, ProgressLine& progress) {
-  model::RobotModel robot = model::load_robot(model::find_robot(options.robot));
+  model::RobotModel robot = model::load_robot_standing_as(options.robot, options.clips);
   const ClipLibrary library = model::load_clip_library(options.clips, robot);
   retargeting::LibraryReview review =
       retargeting::review(robot, library, retargeting::read_library_recipe(options.recipe, options.recordings),

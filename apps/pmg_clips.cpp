@@ -29,6 +29,7 @@
 #include "model/clip_library_writer.hpp"
 #include "model/command_inverse_file.hpp"
 #include "model/robot_model.hpp"
+#include "model/standing_posture.hpp"
 #include "option_checks.hpp"
 #include "pmg/blending.hpp"
 #include "program.hpp"
@@ -52,7 +53,7 @@ void write_inverse(const model::RobotModel& robot, const std::filesystem::path& 
 }
 
 int invert(const std::string& robot_name, const std::filesystem::path& clips, const std::string& blend) {
-  const model::RobotModel robot = model::load_robot(model::find_robot(robot_name));
+  const model::RobotModel robot = model::load_robot_standing_as(robot_name, clips);
   const std::filesystem::path directory = clips.empty() ? robot.directory / "clips" : clips;
   model::require_writable(directory);
   write_inverse(robot, directory, blend);
@@ -144,7 +145,7 @@ void print_json(const std::vector<generator::ClipReport>& clips, const std::vect
 }
 
 int show(const ShowOptions& options) {
-  const model::RobotModel robot = model::load_robot(model::find_robot(options.robot));
+  const model::RobotModel robot = model::load_robot_standing_as(options.robot, options.clips);
   const ClipLibrary library =
       model::load_clip_library(options.clips.empty() ? robot.directory / "clips" : options.clips, robot);
   const std::vector<generator::ClipReport> clips = generator::report(robot, library);
@@ -177,7 +178,7 @@ struct WalkOptions {
 /// The double-support limits of docs/explanation/method.md hold for the mean over all commands, the other limits for
 /// each command.
 int walk(const WalkOptions& options) {
-  const model::RobotModel robot = model::load_robot(model::find_robot(options.robot));
+  const model::RobotModel robot = model::load_robot_standing_as(options.robot, options.clips);
   ClipLibrary library =
       model::load_clip_library(options.clips.empty() ? robot.directory / "clips" : options.clips, robot);
   const auto named = std::ranges::find(kBlendNames, options.blend);

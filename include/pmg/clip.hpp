@@ -22,6 +22,9 @@ struct DynamicClip {
   PerFoot<double> duty_factor{};     ///< r in (0, 1]
   std::array<double, kVelocityChannels>
       mean_velocity{};  ///< vx, vy [m/s], omega [rad/s] of the stance feet's kinematics
+  /// The same cycle at half gain, as many samples [rad], [rad per cycle]; empty: midway between q_stand and q
+  /// (half_gain.hpp).
+  std::vector<JointVector> half_q, half_dq_dphi;
 };
 
 /// Joint angles of one posture channel as a function of its command; linear between rows.

@@ -17,6 +17,7 @@
 #include "pmg/command_limiter.hpp"
 #include "pmg/contact.hpp"
 #include "pmg/corner_clips.hpp"
+#include "pmg/half_gain.hpp"
 #include "pmg/joint_clamp.hpp"
 #include "pmg/library_check.hpp"
 #include "pmg/mirror.hpp"
@@ -55,7 +56,8 @@ struct GeneratorOptions {
   double turn_s = 0.1;
 };
 
-/// q_ref(phi) = q_d + q_s (paper eq. 10) with q_d = sum g_i q_i(phi) + (1 - sum g_i) q_stand.
+/// q_ref(phi) = q_d + q_s (paper eq. 10) with q_d = sum g_i q_i(phi) + (1 - sum g_i) q_stand, and the bends of clips
+/// that say how they look at half gain (half_gain.hpp).
 ///
 /// The stages of a tick:
 ///   (user, dt) => (wanted)              CommandLimiter: range and rate limits
@@ -86,10 +88,15 @@ class Generator {
     if (blend_ == Blend::kCorners) add_corner_clips(library, clips);
     timings_ = GaitTimings(clips);
     admissible_ = AdmissibleSet(q_stand_, q_lower_, q_upper_, options_.limit_margin_rad);
+    const bool bends = std::any_of(directions.begin(), directions.end(),
+                                   [](const auto& clip) { return clip && has_half_gain(*clip); });
     for (std::size_t c = 0; c < kCorners; ++c) {
       if (!clips[c]) continue;
       curve_[c] = ClipCurve(*clips[c]);
       admissible_.add(c, curve_[c], q_stand_);
+      if (c >= kDirections || !bends) continue;
+      admissible_.add_phases(c, *clips[c], q_stand_);
+      if (has_half_gain(*clips[c])) bend_[c] = ClipCurve(bend_of(*clips[c], q_stand_));
     }
     for (std::size_t i = 0; i < kPostureChannels; ++i) {
       check::static_clip(library.posture[i], q_stand_, std::string("clip ") + kChannelNames[kVelocityChannels + i]);
@@ -313,6 +320,17 @@ class Generator {
       curve_[d].add_blended(segment, phase_.rate_per_s(), mixture.gain[d], gain_rate_per_s[d], reference_.q,
                             reference_.dq);
     }
+    for (std::size_t d = 0; d < kDirections; ++d) {
+      if (bend_[d].samples() == 0.0) continue;
+      const double bend = bend_gain(mixture.gain[d]);
+      const double bend_rate_per_s = (bend - bend_gain(gain_[d])) / dt_s;
+      if (bend == 0.0 && bend_rate_per_s == 0.0) continue;
+      if (bend_[d].samples() != samples) {
+        segment = bend_[d].segment(phase_.phase());
+        samples = bend_[d].samples();
+      }
+      bend_[d].add_blended(segment, phase_.rate_per_s(), bend, bend_rate_per_s, reference_.q, reference_.dq);
+    }
     std::copy_n(mixture.gain.begin(), mixture.size, gain_.begin());
     previous_q_s_ = q_s_;
   }
@@ -323,6 +341,7 @@ class Generator {
   Blend blend_ = Blend::kGain;
   JointVector q_stand_, q_lower_, q_upper_;  ///< [rad]
   PerCorner<ClipCurve> curve_;               ///< empty where there is no clip
+  PerDirection<ClipCurve> bend_;             ///< b of half_gain.hpp; empty where a clip has none
   PerDirection<double> scale_{};             ///< u_max of each direction
   GaitTimings timings_;
   Posture posture_;

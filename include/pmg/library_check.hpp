@@ -61,6 +61,14 @@ inline void dynamic_clip(const DynamicClip& clip, Eigen::Index joints, const std
     joint_vector(clip.q[k], joints, name + ": q[" + std::to_string(k) + "]");
     joint_vector(clip.dq_dphi[k], joints, name + ": dq_dphi[" + std::to_string(k) + "]");
   }
+  require(clip.half_q.empty() || clip.half_q.size() == clip.q.size(),
+          name + ": half_q has another number of samples than q; expected as many, or none");
+  require(clip.half_dq_dphi.size() == clip.half_q.size(),
+          name + ": half_dq_dphi has another number of samples than half_q");
+  for (std::size_t k = 0; k < clip.half_q.size(); ++k) {
+    joint_vector(clip.half_q[k], joints, name + ": half_q[" + std::to_string(k) + "]");
+    joint_vector(clip.half_dq_dphi[k], joints, name + ": half_dq_dphi[" + std::to_string(k) + "]");
+  }
   require(std::isfinite(clip.period_s) && clip.period_s > 0.0, name + ": period_s; expected more than 0");
   for (const Foot foot : {kLeft, kRight}) {
     require(clip.contact_center[foot] >= 0.0 && clip.contact_center[foot] < 1.0,

@@ -30,6 +30,16 @@ inline DynamicClip mirrored(const MirrorMap& mirror, const DynamicClip& clip) {
     reflected.q[k] = mirrored(mirror, q);
     reflected.dq_dphi[k] = mirrored(mirror, dq_dphi);
   }
+  if (!clip.half_q.empty()) {
+    DynamicClip half = clip;
+    half.q = clip.half_q;
+    half.dq_dphi = clip.half_dq_dphi;
+    half.half_q.clear();
+    half.half_dq_dphi.clear();
+    half = mirrored(mirror, half);
+    reflected.half_q = half.q;
+    reflected.half_dq_dphi = half.dq_dphi;
+  }
   for (const Foot foot : {kLeft, kRight}) {
     const Foot other = foot == kLeft ? kRight : kLeft;
     reflected.contact_center[foot] = wrap_cycle(clip.contact_center[other] + 0.5);

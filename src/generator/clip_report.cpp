@@ -9,6 +9,7 @@
 #include "generator/joint_roles.hpp"
 #include "generator/published_gait.hpp"
 #include "model/leg_kinematics.hpp"
+#include "pmg/half_gain.hpp"
 
 namespace pmg::generator {
 namespace {
@@ -17,8 +18,7 @@ namespace {
 /// At small gains the foot that has just lifted off is then below the ground for the first ticks of its swing.
 constexpr double kSwingBelowGround_m = 0.006;
 
-LegTrajectory leg_trajectory(const DynamicClip& clip, const JointRoles& roles, double gain,
-                             const JointVector& q_stand) {
+LegTrajectory leg_trajectory(const DynamicClip& clip, const JointRoles& roles) {
   LegTrajectory legs;
   for (std::size_t k = 0; k < clip.q.size(); ++k) {
     LegPose q;
@@ -27,8 +27,8 @@ LegTrajectory leg_trajectory(const DynamicClip& clip, const JointRoles& roles, d
       for (std::size_t role = 0; role < kLegJoints; ++role) {
         const int joint = roles.leg[foot][role];
         const auto i = static_cast<Eigen::Index>(role);
-        q[foot][i] = q_stand[joint] + gain * (clip.q[k][joint] - q_stand[joint]);
-        dq[foot][i] = gain * clip.dq_dphi[k][joint];
+        q[foot][i] = clip.q[k][joint];
+        dq[foot][i] = clip.dq_dphi[k][joint];
       }
     }
     legs.q.push_back(q);
@@ -50,14 +50,12 @@ double pelvis_tilt(const DynamicClip& clip, const JointRoles& roles, double gain
 }
 
 /// The base's attitude and rate under an upright torso, one per sample.
-std::vector<BaseMotion> base_of(const model::RobotModel& robot, const DynamicClip& clip, double gain) {
+std::vector<BaseMotion> base_of(const model::RobotModel& robot, const DynamicClip& clip) {
   model::BaseAttitude attitude(robot);
-  const JointVector q_stand = robot.q_stand();
   std::vector<BaseMotion> base;
   for (std::size_t k = 0; k < clip.q.size(); ++k) {
-    const JointVector q = q_stand + gain * (clip.q[k] - q_stand);
-    const JointVector dq = gain / clip.period_s * clip.dq_dphi[k];
-    const model::BaseAttitude::Result at = attitude.compute(q, dq, 0.0, 0.0, 0.0, 0.0);
+    const JointVector dq = 1.0 / clip.period_s * clip.dq_dphi[k];
+    const model::BaseAttitude::Result at = attitude.compute(clip.q[k], dq, 0.0, 0.0, 0.0, 0.0);
     base.push_back({at.R_HB, at.omega_HB_H});
   }
   return base;
@@ -108,7 +106,8 @@ ClipReport report_clip(const model::RobotModel& robot, const JointRoles& roles, 
   for (int tenth = 1; tenth <= 10; ++tenth) {
     GainReport at;
     at.gain = 0.1 * tenth;
-    at.ground = measure(legs, leg_trajectory(clip, roles, at.gain, q_stand), when, base_of(robot, clip, at.gain));
+    const DynamicClip blended = at_gain(clip, q_stand, at.gain);
+    at.ground = measure(legs, leg_trajectory(blended, roles), when, base_of(robot, blended));
     at.velocity_error = at.ground.mean_velocity - at.gain * full;
     out.gains.push_back(at);
   }

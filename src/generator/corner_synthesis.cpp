@@ -28,24 +28,6 @@ MadeGait mirrored_gait(const Making& making, const MadeGait& gait) {
   return out;
 }
 
-/// The sum of a and b, sample by sample.
-Addition together(Addition a, const Addition& b) {
-  for (std::size_t k = 0; k < a.q.size(); ++k) {
-    for (const Foot foot : {kLeft, kRight}) {
-      a.q[k][foot] += b.q[k % b.q.size()][foot];
-      if (!b.dq_dphi.empty()) a.dq_dphi[k][foot] += b.dq_dphi[k % b.dq_dphi.size()][foot];
-    }
-    if (!b.roll.empty()) {
-      a.roll[k].angle_rad += b.roll[k].angle_rad;
-      a.roll[k].slope_rad += b.roll[k].slope_rad;
-    }
-  }
-  a.velocity += b.velocity;
-  a.sway_m += b.sway_m;
-  a.height_m += b.height_m;
-  return a;
-}
-
 struct Pair {
   const MadeGait& first;
   const MadeGait& second;

@@ -34,6 +34,9 @@ Addition posture_addition(const Making& making, Channel channel, double command)
 Addition clip_addition(const Making& making, const LegTrajectory& legs, const GaitTask& task, double gain,
                        double period_s);
 
+/// The sum of both, sample by sample; a has kClipSamples entries, b those or one.
+Addition together(Addition a, const Addition& b);
+
 /// Gains from 0.12 to 1, and some with postures. posture_weight: weight of walking in a posture; plain walking has 1.
 std::vector<Scenario> scenarios(const Making& making, double posture_weight);
 

@@ -23,6 +23,8 @@ constexpr double kSamePosture_rad = 1e-6;  // far below an encoder's step, far a
 fs::path csv(const fs::path& directory, const std::string& name) { return directory / (name + ".csv"); }
 fs::path yaml(const fs::path& directory, const std::string& name) { return directory / (name + ".yaml"); }
 
+fs::path half_csv(const fs::path& directory, const std::string& name) { return csv(directory, half_gain_name(name)); }
+
 double wrap(double phase) { return phase - std::floor(phase); }
 double circular_distance(double a, double b) { return std::abs(a - b - std::round(a - b)); }
 
@@ -74,6 +76,26 @@ DynamicClip read_dynamic(const fs::path& directory, const std::string& name, con
   check_limits(table, robot);
   clip.q = table.q;
   clip.dq_dphi = periodic_spline_slopes(clip.q);
+  return clip;
+}
+
+/// How a clip of one direction looks at half gain, if a file says so.
+void read_half_gain(const fs::path& directory, const std::string& name, const RobotModel& robot, DynamicClip& clip) {
+  if (!fs::exists(half_csv(directory, name))) return;
+  const ClipTable table = read_clip_table(half_csv(directory, name), robot.joint_index, false);
+  if (table.q.size() != clip.q.size()) {
+    files::raise({table.file.string()}, "", fmt::format("has {} samples", table.q.size()),
+                 fmt::format("{}, as {}.csv", clip.q.size(), name));
+  }
+  check_limits(table, robot);
+  clip.half_q = table.q;
+  clip.half_dq_dphi = periodic_spline_slopes(clip.half_q);
+}
+
+DynamicClip read_direction(const fs::path& directory, const std::string& name, const RobotModel& robot,
+                           std::size_t direction) {
+  DynamicClip clip = read_dynamic(directory, name, robot, kCornerTable[direction]);
+  read_half_gain(directory, name, robot, clip);
   return clip;
 }
 
@@ -236,6 +258,8 @@ JointVector standing_posture(const fs::path& directory, const RobotModel& robot)
   return q;
 }
 
+std::string half_gain_name(const std::string& clip) { return clip + "_half"; }
+
 std::string corner_clip_name(const Corner& corner) {
   std::string name;
   for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
@@ -257,6 +281,11 @@ std::vector<fs::path> clip_library_files(const fs::path& directory) {
   };
   add_all(kPositiveNames);
   add_all(kNegativeNames);
+  for (const auto& names : {kPositiveNames, kNegativeNames}) {
+    for (const char* name : names) {
+      if (fs::exists(half_csv(directory, name))) files.push_back(half_csv(directory, name));
+    }
+  }
   add_all(kPostureNames);
   for (std::size_t c = kDirections; c < kCorners; ++c) {
     add_all(std::array{corner_clip_name(kCornerTable[c])});
@@ -271,11 +300,10 @@ ClipLibrary load_clip_library(const fs::path& directory, const RobotModel& robot
   if (!fs::is_directory(directory)) files::raise({directory.string()}, "", "isn't a directory", "a directory of clips");
   ClipLibrary library;
   for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
-    library.positive[channel] =
-        read_dynamic(directory, kPositiveNames[channel], robot, kCornerTable[direction_of(channel, false)]);
+    library.positive[channel] = read_direction(directory, kPositiveNames[channel], robot, direction_of(channel, false));
     const char* negative = kNegativeNames[channel];
     if (fs::exists(csv(directory, negative)) || fs::exists(yaml(directory, negative))) {
-      library.negative[channel] = read_dynamic(directory, negative, robot, kCornerTable[direction_of(channel, true)]);
+      library.negative[channel] = read_direction(directory, negative, robot, direction_of(channel, true));
     }
   }
   for (std::size_t c = kDirections; c < kCorners; ++c) {

@@ -24,12 +24,16 @@ inline constexpr double kMaxDynamicTotal_s = 10.0;  ///< upper bound of the sum 
 
 /// Reads DIRECTORY/{forward,backward,lateral,turn}.{csv,yaml} (backward, lateral_right and turn_right optional) and
 /// {bend,lean,squat}.{csv,yaml} for this robot. Also reads, if they exist, clips of several velocities
-/// (corner_clip_name), inverse.csv, and library.yaml (the blending rule; gain without the file). Throws ConfigError
-/// with file and line: wrong or missing joint columns, NaN, contact centres of one foot that differ by more than
-/// check::kMaxContactCenterSpread,
-/// static commands that don't increase, dynamic clips of ten seconds or more in total, samples outside joint limits,
-/// mean velocities in the wrong direction, a posture at command 0 that isn't the standing one.
+/// (corner_clip_name), how clips of one direction look at half gain (half_gain_name), inverse.csv, and library.yaml
+/// (the blending rule; gain without the file). Throws ConfigError with file and line: wrong or missing joint columns,
+/// NaN, contact centres of one foot that differ by more than check::kMaxContactCenterSpread, static commands that don't
+/// increase, dynamic clips of ten seconds or more in total, samples outside joint limits, mean velocities in the wrong
+/// direction, a posture at command 0 that isn't the standing one.
 ClipLibrary load_clip_library(const std::filesystem::path& directory, const RobotModel& robot);
+
+/// Name of the file that says how a clip of one direction looks at half gain: forward_half. It isn't a motion of its
+/// own, so its period doesn't count.
+std::string half_gain_name(const std::string& clip);
 
 /// Name of a clip of several velocities: the channels' names in turn, for example forward_turn or lateral_turn_right.
 std::string corner_clip_name(const Corner& corner);

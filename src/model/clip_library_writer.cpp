@@ -65,6 +65,9 @@ void write_dynamic_clip(const fs::path& directory, const std::string& name, cons
     text += fmt::format("  {}: {}\n", kChannelNames[i], clip.mean_velocity[i]);
   }
   write_clip(directory, name, format_clip_table(robot.joint_index, {}, clip.q), text);
+  if (!clip.half_q.empty()) {
+    write_file(directory / (half_gain_name(name) + ".csv"), format_clip_table(robot.joint_index, {}, clip.half_q));
+  }
 }
 
 void write_rules(const fs::path& directory, const ClipLibrary& library) {
@@ -115,6 +118,12 @@ UnfinishedLibrary::~UnfinishedLibrary() {
 
 void UnfinishedLibrary::finish() const {
   if (!fs::exists(command_inverse_file(folder_))) fs::remove(command_inverse_file(library_));
+  for (const auto& names : {kPositiveNames, kNegativeNames}) {
+    for (const char* name : names) {
+      const std::string half = half_gain_name(name) + ".csv";
+      if (!fs::exists(folder_ / half)) fs::remove(library_ / half);
+    }
+  }
   for (const fs::path& file : clip_library_files(folder_)) fs::rename(file, library_ / file.filename());
 }
 

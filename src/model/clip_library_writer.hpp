@@ -14,8 +14,8 @@ namespace pmg::model {
 /// Throws ConfigError unless the directory, or the one that it would be made in, takes new files. Makes nothing.
 void require_writable(const std::filesystem::path& directory);
 
-/// Writes NAME.csv and NAME.yaml. dq_dphi isn't written: it is periodic_spline_slopes of q. Throws ConfigError when a
-/// file can't be written.
+/// Writes NAME.csv and NAME.yaml, and NAME_half.csv of a clip that has one. dq_dphi isn't written: it is
+/// periodic_spline_slopes of q. Throws ConfigError when a file can't be written.
 void write_dynamic_clip(const std::filesystem::path& directory, const std::string& name, const DynamicClip& clip,
                         const RobotModel& robot, const std::string& source);
 void write_static_clip(const std::filesystem::path& directory, const std::string& name, Channel channel,
@@ -37,7 +37,8 @@ class UnfinishedLibrary {
   UnfinishedLibrary& operator=(const UnfinishedLibrary&) = delete;
 
   const std::filesystem::path& folder() const { return folder_; }
-  /// Moves the new files to their places. An old inverse without a new one goes: it doesn't belong to these clips.
+  /// Moves the new files to their places. An old inverse or half-gain file without a new one goes: it doesn't belong to
+  /// these clips.
   void finish() const;
 
  private:

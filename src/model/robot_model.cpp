@@ -279,4 +279,11 @@ RobotModel standing_as(RobotModel robot, const JointVector& q_stand) {
   return robot;
 }
 
+RobotModel load_robot_standing_as(const std::string& robot, const std::filesystem::path& clips) {
+  RobotModel loaded = load_robot(find_robot(robot));
+  if (!std::filesystem::is_directory(clips)) return loaded;  // what reads the clips says what is wrong with them
+  const JointVector q_stand = standing_posture(clips, loaded);
+  return standing_as(std::move(loaded), q_stand);
+}
+
 }  // namespace pmg::model

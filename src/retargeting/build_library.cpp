@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <thread>
 #include <utility>
 
@@ -78,6 +79,61 @@ double median_duty_factor(const std::vector<Source>& sources) {
   return fitting::median(std::move(r));
 }
 
+/// A part of the work: these clips can be made side by side.
+struct Pass {
+  std::vector<std::size_t> clips;
+  bool retargets = false;  ///< from the recording, before the fit
+  std::function<void(std::size_t, const work::Progress&)> fit;
+};
+
+std::vector<std::size_t> of_channel(const std::vector<BuiltClip>& clips, std::size_t channel) {
+  std::vector<std::size_t> list;
+  for (std::size_t i = 0; i < clips.size(); ++i) {
+    if (clips[i].recipe.channel == channel) list.push_back(i);
+  }
+  return list;
+}
+
+/// Channel after channel, because each clip is made to mix with those of the channels before.
+std::vector<Pass> first_passes(const generator::Making& making, std::vector<BuiltClip>& clips) {
+  std::vector<Pass> passes;
+  for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
+    passes.push_back(
+        {of_channel(clips, channel), true, [&making, &clips, channel](std::size_t i, const work::Progress& progress) {
+           std::vector<const generator::MadeGait*> others;
+           for (const BuiltClip& other : clips) {
+             if (other.recipe.channel < channel) others.push_back(&other.made.gait);
+           }
+           fit_for_blending(making, others, clips[i].made, progress);
+         }});
+  }
+  return passes;
+}
+
+/// Clips at full gain know nothing of each other. Half-gain clips are made channel after channel, in two sweeps: in the
+/// second one each mixes with all others as they are.
+std::vector<Pass> passes_with_half_gains(const generator::Making& making, std::vector<BuiltClip>& clips) {
+  std::vector<std::size_t> all(clips.size());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+  std::vector<Pass> passes = {{all, true, [&making, &clips](std::size_t i, const work::Progress& progress) {
+                                 fit_full_gain(making, clips[i].made, progress);
+                               }}};
+  constexpr int kSweeps = 2;
+  for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
+      passes.push_back({of_channel(clips, channel), false,
+                        [&making, &clips, channel](std::size_t i, const work::Progress& progress) {
+                          std::vector<const RetargetedClip*> others;
+                          for (const BuiltClip& other : clips) {
+                            if (other.recipe.channel != channel && other.made.half) others.push_back(&other.made);
+                          }
+                          fit_half_gain(making, others, clips[i].made, progress);
+                        }});
+    }
+  }
+  return passes;
+}
+
 }  // namespace
 
 mocap::GaitCycle chosen_cycle(const ClipRecipe& recipe, const mocap::Recording& recording) {
@@ -131,38 +187,40 @@ BuiltLibrary build_library(const model::RobotModel& robot, const LibraryRecipe& 
 
   const double duty_factor = recipe.duty_factor.value_or(median_duty_factor(sources));
 
-  // Channel after channel, because each clip is made to mix with those of the channels before.
   built.clips.resize(recipe.clips.size());
-  std::size_t done = 0;
-  for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
-    std::vector<const generator::MadeGait*> others;
-    std::vector<std::size_t> now;
-    for (std::size_t i = 0; i < recipe.clips.size(); ++i) {
-      if (recipe.clips[i].channel < channel) others.push_back(&built.clips[i].made.gait);
-      if (recipe.clips[i].channel == channel) now.push_back(i);
-    }
+  for (std::size_t i = 0; i < recipe.clips.size(); ++i) built.clips[i].recipe = recipe.clips[i];
+  const std::vector<Pass> passes = recipe.revision == kFirstRevision ? first_passes(making, built.clips)
+                                                                     : passes_with_half_gains(making, built.clips);
+  std::size_t all = 0, done = 0;
+  for (const Pass& pass : passes) all += pass.clips.size();
+  for (const Pass& pass : passes) {
     work::for_each_in_parallel(
-        now.size(), std::max(1U, std::thread::hardware_concurrency()),
+        pass.clips.size(), std::max(1U, std::thread::hardware_concurrency()),
         [&](std::size_t k) {
-          const ClipRecipe& clip = recipe.clips[now[k]];
-          const Source& source = sources[now[k]];
+          const std::size_t i = pass.clips[k];
           const work::Progress within{.interrupted = progress.interrupted};
-          RetargetedClip made = retarget(making, source.recording, source.cut, clip.channel, duty_factor, within);
-          expect_direction(clip, made);
-          fit_for_blending(making, others, made, within);
-          expect_limits(clip, made);
-          built.clips[now[k]] = {clip, made, source_of(recipe, clip, made), source.recording.notes};
+          if (pass.retargets) {
+            built.clips[i].made =
+                retarget(making, sources[i].recording, sources[i].cut, recipe.clips[i].channel, duty_factor, within);
+            expect_direction(recipe.clips[i], built.clips[i].made);
+          }
+          pass.fit(i, within);
         },
         {.report =
              [&](double share, std::string_view) {
                if (progress.report)
-                 progress.report((static_cast<double>(done) + share * static_cast<double>(now.size())) /
-                                     static_cast<double>(recipe.clips.size()),
+                 progress.report((static_cast<double>(done) + share * static_cast<double>(pass.clips.size())) /
+                                     static_cast<double>(all),
                                  "retargeting");
              },
          .interrupted = progress.interrupted});
     if (progress.interrupted_now()) throw work::Interrupted();
-    done += now.size();
+    done += pass.clips.size();
+  }
+  for (std::size_t i = 0; i < recipe.clips.size(); ++i) {
+    expect_limits(recipe.clips[i], built.clips[i].made);
+    built.clips[i].source = source_of(recipe, recipe.clips[i], built.clips[i].made);
+    built.clips[i].notes = sources[i].recording.notes;
   }
   VelocityScale scale;
   for (const BuiltClip& clip : built.clips) {

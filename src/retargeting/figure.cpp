@@ -3,14 +3,14 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <string>
+#include <optional>
 
 #include "generator/joint_roles.hpp"
 #include "generator/leg_geometry.hpp"
 #include "mocap/activities.hpp"
 #include "mocap/gait_events.hpp"
 #include "model/leg_kinematics.hpp"
-#include "model/link_chain.hpp"
+#include "retargeting/arm_points.hpp"
 #include "retargeting/leg_imitation.hpp"
 
 namespace pmg::retargeting {
@@ -36,37 +36,12 @@ double between(const std::vector<double>& values, double frame) {
   return (1.0 - share) * values[before] + share * values[after];
 }
 
-/// The last link below a joint, along first children.
-std::string last_link_below(const model::RobotModel& robot, int joint) {
-  urdf::LinkConstSharedPtr link =
-      robot.urdf->getLink(robot.urdf->getJoint(robot.joint_index.name(joint))->child_link_name);
-  while (!link->child_links.empty()) link = link->child_links.front();
-  return link->name;
+void add_arm(ArmChain& arm, const JointVector& q, const Eigen::Matrix3d& R_HB, Side side, Figure& figure) {
+  const ArmPoints points = arm.compute(q);
+  at(figure, of_side(KeyBody::left_shoulder, side)) = R_HB * points.shoulder;
+  at(figure, of_side(KeyBody::left_elbow, side)) = R_HB * points.elbow;
+  at(figure, of_side(KeyBody::left_wrist, side)) = R_HB * points.wrist;
 }
-
-/// Shoulder, elbow and wrist of one arm, if the robot has it.
-class ArmPoints {
- public:
-  ArmPoints(const model::RobotModel& robot, const generator::JointRoles& roles, Foot side) {
-    if (!roles.shoulder_pitch[side] || !roles.elbow[side]) return;
-    chain_.emplace(model::chain_between(robot, robot.base_link, last_link_below(robot, *roles.elbow[side])));
-    for (std::size_t i = 0; i < chain_->size(); ++i) {
-      if (chain_->joint(i) == *roles.shoulder_pitch[side]) shoulder_ = i;
-      if (chain_->joint(i) == *roles.elbow[side]) elbow_ = i;
-    }
-  }
-  void add(const JointVector& q, const Eigen::Matrix3d& R_HB, Side side, Figure& figure) {
-    if (!chain_) return;
-    chain_->compute(q);
-    at(figure, of_side(KeyBody::left_shoulder, side)) = R_HB * chain_->origin(shoulder_);
-    at(figure, of_side(KeyBody::left_elbow, side)) = R_HB * chain_->origin(elbow_);
-    at(figure, of_side(KeyBody::left_wrist, side)) = R_HB * chain_->p();
-  }
-
- private:
-  std::optional<model::ChainKinematics> chain_;
-  std::size_t shoulder_ = 0, elbow_ = 0;
-};
 
 }  // namespace
 
@@ -128,7 +103,7 @@ std::vector<Figure> figures_of(const mocap::Recording& recording, const HumanCyc
 std::vector<Figure> figures_of(const model::RobotModel& robot, const DynamicClip& clip) {
   const generator::JointRoles roles = generator::find_joint_roles(robot);
   const PerFoot<generator::LegGeometry> legs = {leg_geometry(robot, roles, kLeft), leg_geometry(robot, roles, kRight)};
-  PerFoot<ArmPoints> arms = {ArmPoints(robot, roles, kLeft), ArmPoints(robot, roles, kRight)};
+  PerFoot<std::optional<ArmChain>> arms = {ArmChain::of(robot, roles, kLeft), ArmChain::of(robot, roles, kRight)};
   model::BaseAttitude attitude(robot);
   model::ChainKinematics torso(robot.torso_chain, robot.torso_joints);
   std::vector<Figure> figures;
@@ -150,7 +125,7 @@ std::vector<Figure> figures_of(const model::RobotModel& robot, const DynamicClip
       at(figure, of_side(KeyBody::left_toe, side)) = R_HB * (0.5 * (points.sole[0] + points.sole[1]));
       at(figure, of_side(KeyBody::left_heel, side)) = R_HB * (0.5 * (points.sole[2] + points.sole[3]));
       for (const Eigen::Vector3d& corner : points.sole) lowest_m = std::min(lowest_m, (R_HB * corner).z());
-      arms[foot].add(q, R_HB, side, figure);
+      if (arms[foot]) add_arm(*arms[foot], q, R_HB, side, figure);
     }
     if (at(figure, KeyBody::left_shoulder) && at(figure, KeyBody::right_shoulder)) {
       at(figure, KeyBody::neck) = 0.5 * (*at(figure, KeyBody::left_shoulder) + *at(figure, KeyBody::right_shoulder));

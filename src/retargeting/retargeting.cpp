@@ -1,12 +1,16 @@
 #include "retargeting/retargeting.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <ctime>
 #include <limits>
+#include <tuple>
+#include <utility>
 
 #include "generator/gait_optimization.hpp"
 #include "pmg/periodic_slopes.hpp"
+#include "retargeting/arm_imitation.hpp"
 #include "retargeting/leg_imitation.hpp"
 #include "retargeting/upper_body_imitation.hpp"
 
@@ -18,6 +22,14 @@ using generator::LegTrajectory;
 
 /// Of an even mixture with another clip, and of a posture; the clip alone has 1 at each gain.
 constexpr double kMixtureWeight = 3.0, kPostureWeight = 0.2;
+
+/// Gains of a clip and of another one in mixtures that half-gain clips are made for; their sum is 1 at most
+/// (Blend::kGain).
+constexpr std::array<std::pair<double, double>, 4> kPairs = {{{0.3, 0.7}, {0.5, 0.5}, {0.7, 0.3}, {0.3, 0.3}}};
+
+/// Five times the synthesis' weight: a person's curves turn where clearance begins to be asked, and a drive must
+/// follow.
+constexpr double kSmooth = 1e-3;
 
 /// Kept free at each limit: the generator keeps 2 degrees after it has added a posture.
 constexpr double kLimitMargin_rad = 4.0 * kRadPerDegree;
@@ -111,6 +123,99 @@ GaitTask blending_task(const generator::Making& making, const std::vector<const 
   return task;
 }
 
+/// Of the clip at full gain alone, as a library is accepted with it (generator/clip_report.hpp).
+GaitTask full_gain_task(const RetargetedClip& made) {
+  GaitTask task = made.gait.task;
+  task.clearance_m = 0.030;
+  task.landing = 1.0;
+  task.weights.reference << 48.0, 48.0, 24.0, 48.0, 48.0, 24.0;
+  task.weights.bias = task.weights.reference;
+  const double kept = kept_share(made);
+  task.weights.reference *= kept;
+  task.weights.bias *= kept;
+  task.weights.slip = 30.0;
+  task.weights.velocity = 9.0;
+  task.weights.velocity_yaw = 6.0;
+  task.weights.clearance = 1200.0;
+  task.weights.smooth = kSmooth;
+  task.weights.step_height = 2400.0;
+  task.weights.above_ground = 1800.0;
+  task.weights.foot_gap = 600.0;
+  return task;
+}
+
+/// A clip at this gain as part of a mixture: q_stand + g (2 g - 1) d + 4 g (1 - g) h.
+generator::Addition at_gain(const generator::Making& making, const RetargetedClip& clip, double gain, double period_s) {
+  if (!clip.half) return generator::clip_addition(making, clip.gait.legs, clip.gait.task, gain, period_s);
+  return generator::together(
+      generator::clip_addition(making, clip.gait.legs, clip.gait.task, gain * (2.0 * gain - 1.0), period_s),
+      generator::clip_addition(making, clip.half->legs, clip.half->task, 4.0 * gain * (1.0 - gain), period_s));
+}
+
+/// The velocity channel of a clip.
+Eigen::Index channel_of(const RetargetedClip& clip) {
+  Eigen::Index channel = 0;
+  clip.wanted_velocity.cwiseAbs().maxCoeff(&channel);
+  return channel;
+}
+
+GaitTask half_gain_task(const generator::Making& making, const std::vector<const RetargetedClip*>& others,
+                        const RetargetedClip& made) {
+  GaitTask task = made.gait.task;
+  task.velocity *= 0.5;
+  task.sway_m *= 0.5;
+  task.hike_rad *= 0.5;
+  task.height_m *= 0.5;
+  task.clearance_m = 0.030;
+  for (std::size_t k = 0; k < kClipSamples; ++k) {
+    for (const Foot foot : {kLeft, kRight})
+      task.reference[k][foot] = 0.5 * (making.legs.stand[foot] + made.gait.legs.q[k][foot]);
+  }
+  task.weights.reference = generator::LegVector<double>::Constant(4.0);
+  task.weights.bias = task.weights.reference;
+  task.weights.velocity = 9.0;
+  task.weights.velocity_yaw = 6.0;
+  task.weights.clearance = 400.0;
+  task.weights.step_height = 2400.0;
+  task.weights.above_ground = 1800.0;
+  task.weights.foot_gap = 600.0;
+  task.weights.smooth = kSmooth;
+  task.scenarios.clear();
+  const auto scenario = [&](double gain, double weight) {
+    generator::Scenario s;
+    s.gain = 4.0 * gain * (1.0 - gain);
+    s.weight = weight;
+    s.lift = gain;
+    s.promised = true;
+    s.addition =
+        generator::clip_addition(making, made.gait.legs, made.gait.task, gain * (2.0 * gain - 1.0), task.period_s);
+    return s;
+  };
+  for (const double gain : {0.12, 0.3, 0.55, 0.8}) task.scenarios.push_back(scenario(gain, 1.0));
+  for (const auto& [gain, channel, command] :
+       {std::tuple{0.3, kHeight, -0.09}, std::tuple{0.6, kHeight, -0.09}, std::tuple{0.5, kRoll, 0.12}}) {
+    generator::Scenario s = scenario(gain, kPostureWeight);
+    s.addition = generator::together(s.addition, generator::posture_addition(making, channel, command));
+    s.promised = false;
+    task.scenarios.push_back(s);
+  }
+  const auto add_mixture = [&](double gain, double others_gain, const std::vector<const RetargetedClip*>& with) {
+    generator::Scenario s = scenario(gain, 1.0);
+    s.lift = std::max(gain, others_gain);
+    for (const RetargetedClip* other : with)
+      s.addition = generator::together(s.addition, at_gain(making, *other, others_gain, task.period_s));
+    task.scenarios.push_back(s);
+  };
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    for (const auto& [gain, others_gain] : kPairs) add_mixture(gain, others_gain, {others[i]});
+    for (std::size_t j = i + 1; j < others.size(); ++j) {
+      if (channel_of(*others[i]) == channel_of(*others[j])) continue;
+      add_mixture(1.0 / 3.0, 1.0 / 3.0, {others[i], others[j]});
+    }
+  }
+  return task;
+}
+
 DynamicClip whole_body(const generator::Making& making, const GaitTask& task, const LegTrajectory& legs,
                        const HumanCycle& human, const generator::GroundMeasure& ground) {
   DynamicClip clip;
@@ -192,6 +297,36 @@ void fit_for_blending(const generator::Making& making, const std::vector<const g
   made.unmended = {made.likeness, made.ground};
   make_clip(making, blending_task(making, others, made), progress, made);
   made.fit_s = thread_cpu_s() - begin_s;
+}
+
+void fit_full_gain(const generator::Making& making, RetargetedClip& made, const work::Progress& progress) {
+  const double begin_s = thread_cpu_s();
+  made.unmended = {made.likeness, made.ground};
+  make_clip(making, full_gain_task(made), progress, made);
+  imitate_arms(making.robot, making.roles, made.human, kLimitMargin_rad, made.clip);
+  made.joint_speed_share = 0.0;
+  measure_joints(making.robot, made);
+  made.fit_s = thread_cpu_s() - begin_s;
+}
+
+void fit_half_gain(const generator::Making& making, const std::vector<const RetargetedClip*>& others,
+                   RetargetedClip& made, const work::Progress& progress) {
+  const double begin_s = thread_cpu_s();
+  generator::MadeGait half;
+  half.task = half_gain_task(making, others, made);
+  half.legs = generator::optimize_gait(making.legs, half.task, progress).legs;
+  made.half = std::move(half);
+  made.clip.half_q.clear();
+  for (std::size_t k = 0; k < kClipSamples; ++k) {
+    JointVector q = 0.5 * (making.robot.q_stand() + made.clip.q[k]);
+    for (const Foot foot : {kLeft, kRight}) {
+      for (std::size_t role = 0; role < generator::kLegJoints; ++role)
+        q[making.roles.leg[foot][role]] = made.half->legs.q[k][foot][static_cast<Eigen::Index>(role)];
+    }
+    made.clip.half_q.push_back(q);
+  }
+  made.clip.half_dq_dphi = periodic_spline_slopes(made.clip.half_q);
+  made.fit_s += thread_cpu_s() - begin_s;
 }
 
 }  // namespace pmg::retargeting

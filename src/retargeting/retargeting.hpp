@@ -21,7 +21,8 @@ struct Unmended {
 
 struct RetargetedClip {
   DynamicClip clip;
-  generator::MadeGait gait;  ///< what the optimisation was asked and gave
+  generator::MadeGait gait;                 ///< what the optimisation was asked and gave
+  std::optional<generator::MadeGait> half;  ///< the same at half gain, after fit_half_gain
   HumanCycle human;
   double length_ratio = 1.0;  ///< robot's leg over the human's
   double froude_ratio = 1.0;  ///< sqrt(length_ratio): robot's period over the human's, and its speed over the human's
@@ -50,5 +51,13 @@ RetargetedClip retarget(const generator::Making& making, const mocap::Recording&
 /// as that needs; likeness says how far, unmended what it was before. Throws work::Interrupted where progress is over.
 void fit_for_blending(const generator::Making& making, const std::vector<const generator::MadeGait*>& others,
                       RetargetedClip& made, const work::Progress& progress = {});
+
+/// Makes the clip anew at full gain alone, as a library is accepted with it, with the person's arms.
+void fit_full_gain(const generator::Making& making, RetargetedClip& made, const work::Progress& progress = {});
+
+/// Leaves the clip as it is and makes its half-gain clip, so that the feet keep to the ground at every gain, in
+/// postures, and in mixtures with these other clips, whose half-gain clips count where they have them.
+void fit_half_gain(const generator::Making& making, const std::vector<const RetargetedClip*>& others,
+                   RetargetedClip& made, const work::Progress& progress = {});
 
 }  // namespace pmg::retargeting

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -32,6 +33,8 @@ void expect_same(const DynamicClip& a, const DynamicClip& b) {
   EXPECT_EQ(a.contact_center, b.contact_center);
   EXPECT_EQ(a.duty_factor, b.duty_factor);
   EXPECT_EQ(a.mean_velocity, b.mean_velocity);
+  EXPECT_EQ(a.half_q, b.half_q);
+  EXPECT_EQ(a.half_dq_dphi, b.half_dq_dphi);
 }
 
 TEST(ClipLibrary, IsReadAsWritten) {
@@ -41,6 +44,9 @@ TEST(ClipLibrary, IsReadAsWritten) {
   std::uniform_real_distribution<double> jitter(-1e-3, 1e-3);
   for (JointVector& q : library.positive[kVx]->q) q = q.unaryExpr([&](double x) { return x + jitter(random); });
   library.positive[kVx]->dq_dphi = periodic_spline_slopes(library.positive[kVx]->q);
+  for (const JointVector& q : library.positive[kVx]->q)
+    library.positive[kVx]->half_q.emplace_back(library.q_stand + 0.4 * (q - library.q_stand));
+  library.positive[kVx]->half_dq_dphi = periodic_spline_slopes(library.positive[kVx]->half_q);
   library.positive[kVx]->period_s = 0.8 + jitter(random);
   library.positive[kVx]->mean_velocity = {0.4 + jitter(random), jitter(random), jitter(random)};
 
@@ -83,6 +89,31 @@ TEST(UnfinishedLibrary, TakesAnInverseOfTheOldClipsAwayOnlyWhenTheNewOnesAreInPl
   std::filesystem::copy(clips / "forward.csv", finished.folder());
   finished.finish();
   EXPECT_FALSE(std::filesystem::exists(inverse));
+}
+
+/// A bend of other clips would be played in silence.
+TEST(UnfinishedLibrary, TakesHalfGainFilesOfTheOldClipsAway) {
+  const TemporaryCopy copy(kBipedFolder);
+  const std::filesystem::path clips = copy.file("clips");
+  std::ofstream(clips / "forward_half.csv") << "old";
+  std::ofstream(clips / "turn_half.csv") << "old";
+  const UnfinishedLibrary finished(clips);
+  std::ofstream(finished.folder() / "turn_half.csv") << "new";
+  finished.finish();
+  EXPECT_FALSE(std::filesystem::exists(clips / "forward_half.csv"));
+  EXPECT_EQ(copy.read("clips/turn_half.csv"), "new");
+}
+
+TEST(ClipLibrary, NamesItsHalfGainFilesAmongItsFiles) {
+  const TemporaryCopy copy(kBipedFolder);
+  const std::filesystem::path clips = copy.file("clips");
+  const auto count = [&] {
+    const auto files = clip_library_files(clips);
+    return std::ranges::count(files, clips / "backward_half.csv");
+  };
+  EXPECT_EQ(count(), 0);
+  std::filesystem::copy(clips / "backward.csv", clips / "backward_half.csv");
+  EXPECT_EQ(count(), 1);
 }
 
 TEST(ClipLibrary, CarriesTheRobotsPostureLimitsAndMirror) {
@@ -236,6 +267,11 @@ TEST_F(RefusedClips, MissingSamples) {
 TEST_F(RefusedClips, HalfAnOptionalClip) {
   std::filesystem::remove(copy_.file("clips/backward.csv"));
   EXPECT_THAT(refusal(), StartsWith(copy_.file("clips/backward.csv").string() + ": cannot be read"));
+}
+TEST_F(RefusedClips, HalfGainOfAnotherLength) {
+  std::string text = copy_.read("clips/turn.csv");
+  copy_.write("clips/turn_half.csv", text.substr(0, text.rfind('\n', text.size() - 2) + 1));
+  EXPECT_THAT(refusal(), AllOf(StartsWith(copy_.file("clips/turn_half.csv").string()), HasSubstr("as turn.csv")));
 }
 TEST_F(RefusedClips, UnknownColumn) {
   expect_changed("turn.csv", "waist_pitch", "tail", "tail", "is an unknown column");
