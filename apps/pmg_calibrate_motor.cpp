@@ -166,7 +166,7 @@ void print_summary(const calib::FitResults& results, const fs::path& out) {
     const double value = calib::value(results.fit.model, p.name);
     const std::string reservation = calib::reservation(p, value, results.confidence[i]);
     std::cout << fmt::format("{:34} {:>11.5g} +- {:<8} {}{}\n", p.name, value,
-                             calib::deviation_text(results.confidence[i]), calib::unit_on_rig(p.unit, *results.bench),
+                             calib::deviation_text(results.confidence[i]), calib::unit_on_rig(p.unit(), *results.bench),
                              reservation.empty() ? "" : "   (" + reservation + ")");
   }
   const auto line = [&](const char* what, const calib::Assessment& a) {

@@ -133,7 +133,7 @@ bool CandidateSearch::take_one(std::vector<Passed>& taken) {
 Variation CandidateSearch::described(const Passed& best, const std::vector<Passed>& passed) const {
   const effects::Unknown& u = equations_.columns[static_cast<std::size_t>(best.effect.column)];
   Variation found{.parameter = u.name,
-                  .unit = calib::unit_on_rig(u.unit, in_.bench),
+                  .unit = calib::unit_on_rig(u.unit(), in_.bench),
                   .columns = best.effect.grouping.columns,
                   .from = best.effect.grouping.from,
                   .lower = u.lower,

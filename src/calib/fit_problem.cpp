@@ -38,23 +38,19 @@ double to_unit(const FitParameter& p, double value) {
 
 }  // namespace
 
+model::Quantity quantity(const std::string& name) {
+  return name == kInertia || name == kGravity ? model::Quantity::kFactor : model::actuator_parameter(name).quantity;
+}
+
 FitParameter fit_parameter(const std::string& name, const bench::Bench& bench) {
-  if (name == kInertia || name == kGravity) return {name, "", 0.3, 3.0};
+  if (name == kInertia || name == kGravity) return {name, model::Quantity::kFactor, 0.3, 3.0};
   const model::ActuatorParameter& p = model::actuator_parameter(name);
   // A servo firmware's gain: its unit per radian of error, at a duty of 1.
-  if (bench.law == bench::DriveLaw::kServoVoltage && name == "drive.kp_scale") return {name, "", 1e-4, 5.0};
-  // A linear axis moves kilograms by hundreds of newtons.
-  const bool linear = bench.rig == bench::Rig::kLinear;
-  const double scale = !linear                         ? 1.0
-                       : p.unit.starts_with("kg")      ? 1000.0
-                       : p.unit.starts_with("Nm")      ? 100.0
-                       : p.unit.starts_with("1/Nm")    ? 0.01
-                       : p.unit.starts_with("1/(Nm^2") ? 1e-4
-                       : p.unit == "W"                 ? 100.0
-                       : p.unit == "1/J"               ? 0.01
-                                                       : 1.0;
-  if (linear && name == "friction.presliding_rad") return {name, std::string(p.unit), 1e-6, 1e-3};
-  return {name, std::string(p.unit), p.lower * scale, p.upper * scale};
+  if (bench.law == bench::DriveLaw::kServoVoltage && name == "drive.kp_scale") return {name, p.quantity, 1e-4, 5.0};
+  if (bench.rig != bench::Rig::kLinear) return {name, p.quantity, p.lower, p.upper};
+  if (name == "friction.presliding_rad") return {name, p.quantity, 1e-6, 1e-3};
+  const double scale = model::factor_on_linear_axis(p.quantity);
+  return {name, p.quantity, p.lower * scale, p.upper * scale};
 }
 
 std::vector<std::string> basic_parameters(const bench::Bench& bench) {
@@ -143,7 +139,7 @@ std::vector<double> FitProblem::with_torques_scaled(std::span<const double> poin
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     const FitParameter& p = parameters_[i];
     const bool gain = p.name == "drive.kp_scale" || p.name == "drive.kd_scale";
-    if (!(p.unit.starts_with("Nm") || p.unit.starts_with("kg") || (gain && gains_are_torques))) continue;
+    if (!(model::follows_torque(p.quantity) || (gain && gains_are_torques))) continue;
     scaled[i] = to_unit(p, factor * to_range(p, point[i]));
   }
   return scaled;

@@ -14,14 +14,18 @@ namespace pmg::calib {
 /// A free parameter and its search range.
 struct FitParameter {
   std::string name;  ///< an actuator's ("friction.coulomb_Nm"), or load.inertia_scale, load.gravity_scale
-  std::string unit;
+  model::Quantity quantity;
   double lower, upper;
+  std::string unit() const { return std::string(model::unit(quantity)); }
   bool operator==(const FitParameter&) const = default;
 };
 
 /// (name of an actuator's or a load's parameter, bench) => (the parameter with its range on this rig). Throws
 /// std::invalid_argument that lists the names.
 FitParameter fit_parameter(const std::string& name, const bench::Bench& bench);
+
+/// Of an actuator's or a load's parameter. Throws as fit_parameter does.
+model::Quantity quantity(const std::string& name);
 
 /// The paper's parameters (III-C.1: Kp, Kd, I) for this bench's drive law, and those that bench.yaml calls unknown.
 std::vector<std::string> basic_parameters(const bench::Bench& bench);

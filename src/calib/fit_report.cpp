@@ -85,7 +85,7 @@ void show_parameters(pages::Page& page, const FitResults& results) {
     const FitParameter& p = results.problem->parameters()[i];
     const double x = value(results.fit.model, p.name);
     table.rows.push_back({p.name, fmt::format("{:.5g}", x), deviation_text(results.confidence[i]),
-                          unit_on_rig(p.unit, *results.bench), fmt::format("{:g} to {:g}", p.lower, p.upper),
+                          unit_on_rig(p.unit(), *results.bench), fmt::format("{:g} to {:g}", p.lower, p.upper),
                           reservation(p, x, results.confidence[i])});
   }
   page.table(table);

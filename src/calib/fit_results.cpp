@@ -66,7 +66,7 @@ Json parameter_json(const bench::Bench& bench, const FitParameter& parameter, do
                     const Confidence& confidence) {
   Json json = {{"value", value},
                {"deviation", std::isfinite(confidence.deviation) ? Json(confidence.deviation) : Json(nullptr)},
-               {"unit", unit_on_rig(parameter.unit, bench)},
+               {"unit", unit_on_rig(parameter.unit(), bench)},
                {"lower", parameter.lower},
                {"upper", parameter.upper},
                {"at_bound", at_bound(parameter, value)}};

@@ -6,7 +6,6 @@
 #include "calib/joint_runs.hpp"
 #include "data_faults/quick_model.hpp"
 #include "effects/catalogue.hpp"
-#include "effects/starts.hpp"
 
 namespace pmg::data_faults {
 
@@ -43,7 +42,7 @@ QuickFit QuickModel::with_best_effect(const std::vector<calib::SingleJoint>& run
     const effects::Form& form = effect.forms.front();
     QuickFit best = fit;
     best.loss = std::numeric_limits<double>::infinity();
-    const std::vector<std::vector<double>> starts = effects::starts(effect, form, fit.model, scale);
+    const std::vector<std::vector<double>> starts = form.starts_at(fit.model, scale);
     const std::size_t stride = std::max<std::size_t>(1, starts.size() / kStarts);
     for (std::size_t s = 0; s < starts.size(); s += stride) {
       const std::vector<double>& values = starts[s];

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "effects/catalogue.hpp"
-#include "evidence/strength.hpp"
+#include "effects/strengths.hpp"
 
 namespace pmg::diagnosis {
 
@@ -69,9 +69,9 @@ std::map<std::string, std::vector<double>> evident_effects(const std::vector<evi
   std::map<std::string, std::vector<double>> found;
   for (const evidence::Signature& check : checks) {
     const bool read_off = check.effect == "quantisation";  // measured_causes() decides
-    if (check.agreement != evidence::Agreement::kAgrees || read_off || !evidence::has_its_sign(check)) continue;
+    if (check.agreement != evidence::Agreement::kAgrees || read_off || !effects::has_its_sign(check)) continue;
     if (!in_base(check.effect, base))
-      found[check.effect] = evidence::measured_strength(check, base, fastest_rad_s, options.signatures);
+      found[check.effect] = effects::measured_strength(check, base, fastest_rad_s, options.signatures);
   }
   return found;
 }

@@ -28,7 +28,7 @@ struct DirectEvidence {
   /// Effects that the base model lacks and that a check says the recordings don't have, while no other check detects
   /// them. evidence::CheckPower says whether that rules out a fitted strength.
   std::vector<std::string> doubted;
-  /// Effects that the base model lacks and that a check detects, with their strengths (evidence::measured_strength;
+  /// Effects that the base model lacks and that a check detects, with their strengths (effects::measured_strength;
   /// empty where the check has none). They get a full fit, whatever they explain to first order.
   std::map<std::string, std::vector<double>> evident;
 };

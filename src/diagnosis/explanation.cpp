@@ -141,7 +141,7 @@ class Explaining {
   evidence::ParameterEstimate estimate(const std::string& parameter) const {
     for (std::size_t i = 0; i < intervals_.size(); ++i) {
       const effects::Unknown& u = from_.fitted.unknowns[i];
-      if (u.name == parameter) return {parameter, intervals_[i], u.unit};
+      if (u.name == parameter) return {parameter, intervals_[i], u.unit()};
     }
     const double value = calib::value(from_.fitted.model, parameter);
     if (effects::is_period(parameter)) {

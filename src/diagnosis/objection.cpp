@@ -124,7 +124,7 @@ std::string EffectSearch::doubt(const Trial& trial) const {
 std::string EffectSearch::unsure(const std::string& effect, const effects::Forms& forms,
                                  const effects::NestedModel& fitted, const std::vector<fitting::Fold>* folds) const {
   if (const effects::Unknown* u = at_edge(effect, forms, fitted, base_.model))
-    return fmt::format("{} ends at the edge of its range, {:.3g} to {:.3g} {}", u->name, u->lower, u->upper, u->unit);
+    return fmt::format("{} ends at the edge of its range, {:.3g} to {:.3g} {}", u->name, u->lower, u->upper, u->unit());
   if (effects::fades_unseen(effect, forms, fitted.model, base_.scale.speed_rad_s))
     return "less than half of its friction fades at the speeds of these runs: they can't tell it from Coulomb friction";
   effects::NestedModel known = fitted;  // without the priors gains, inertia and friction may scale together

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "diagnosis/direct_evidence.hpp"
-#include "diagnosis_page/workshop.hpp"
 #include "effects/catalogue.hpp"
 
 namespace pmg::diagnosis_page {

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "diagnosis_page/assemblies.hpp"
-#include "diagnosis_page/workshop.hpp"
 #include "effects/catalogue.hpp"
 
 namespace pmg::diagnosis_page {
@@ -35,7 +34,12 @@ std::string with_other_names(const Cause& cause) {
   std::vector<std::string> names{cause.effect};
   names.insert(names.end(), cause.or_instead.begin(), cause.or_instead.end());
   names.insert(names.end(), cause.same_here.begin(), cause.same_here.end());
-  return in_workshop_words(names, " or ");
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) text += i + 1 == names.size() ? " or " : ", ";
+    text += effects::workshop_words(names[i]).what;
+  }
+  return text;
 }
 
 std::string all_causes(const Diagnosis& diagnosis) {
@@ -124,7 +128,7 @@ std::string how_sure(const Diagnosis& diagnosis) {
 std::string what_it_costs(const Diagnosis& diagnosis) {
   std::string text;
   for (std::size_t i = 0; i < std::min<std::size_t>(2, diagnosis.causes.size()); ++i) {
-    const std::string cost = workshop_words(diagnosis.causes[i].effect).cost;
+    const std::string cost = effects::workshop_words(diagnosis.causes[i].effect).cost;
     if (!cost.empty()) text += (text.empty() ? "" : " ") + cost;
   }
   return text.empty() ? "" : "On the robot: " + text + " ";
@@ -170,7 +174,7 @@ std::string what_next(const Diagnosis& diagnosis) {
     return fmt::format("Next: {}.", record_next(*diagnosis.next_excitation));
   if (diagnosis.verdict == evidence::Verdict::kNone) return "Next: nothing to do.";
   if (!diagnosis.causes.empty()) {
-    std::string text = fmt::format("Next: {}", workshop_words(diagnosis.causes.front().effect).check);
+    std::string text = fmt::format("Next: {}", effects::workshop_words(diagnosis.causes.front().effect).check);
     if (diagnosis.causes.size() > 1) text += " \"What to check\" has the rest.";
     return text;
   }
@@ -210,7 +214,7 @@ void show_what_to_check(pages::Page& page, const Diagnosis& diagnosis) {
   std::set<std::string> listed;
   const auto add = [&](const std::string& effect) {
     if (!listed.insert(effect).second) return;
-    const WorkshopWords words = workshop_words(effect);
+    const effects::WorkshopWords words = effects::workshop_words(effect);
     table.rows.push_back({words.what, effects::title(effect), words.check});
   };
   for (const Cause& cause : diagnosis.causes) {

@@ -3,39 +3,60 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
+
+#include "effects/families.hpp"
 
 namespace pmg::effects {
 
 namespace {
 
+std::vector<Effect> entries() {
+  std::vector<Effect> found;
+  for (const auto family : {friction_effects, transmission_effects, command_effects, drive_effects, sensor_effects,
+                            warmth_and_load_effects}) {
+    std::ranges::move(family(), std::back_inserter(found));
+  }
+  return found;
+}
+
+/// Nothing for a name from another version of the catalogue.
+const Effect* find(std::string_view name) {
+  const auto found = std::ranges::find(catalogue(), name, &Effect::name);
+  return found == catalogue().end() ? nullptr : &*found;
+}
+
 /// Empty where the effect has one form only, or doesn't know the name.
 std::string form_title(const std::string& effect, const std::string& form) {
-  for (const Effect& one : catalogue()) {
-    if (one.name != effect) continue;
-    for (const Form& each : one.forms) {
-      if (each.name == form) return each.title;
-    }
-  }
-  return "";
+  const Effect* const one = find(effect);
+  if (one == nullptr) return "";
+  const auto found = std::ranges::find(one->forms, form, &Form::name);
+  return found == one->forms.end() ? "" : found->title;
 }
 
 }  // namespace
 
+std::span<const Effect> catalogue() {
+  static const std::vector<Effect> kEntries = entries();
+  return kEntries;
+}
+
 const Effect& effect(std::string_view name) {
+  if (const Effect* const found = find(name)) return *found;
   std::string names;
-  for (const Effect& one : catalogue()) {
-    if (one.name == name) return one;
-    names += (names.empty() ? "" : ", ") + one.name;
-  }
+  for (const Effect& one : catalogue()) names += (names.empty() ? "" : ", ") + one.name;
   throw std::invalid_argument(fmt::format("no effect is called '{}'; expected one of {}", name, names));
 }
 
 std::string title(const std::string& name) {
-  for (const Effect& one : catalogue()) {
-    if (one.name == name) return one.title;
-  }
-  return name;
+  const Effect* const found = find(name);
+  return found == nullptr ? name : found->title;
+}
+
+WorkshopWords workshop_words(const std::string& effect) {
+  const Effect* const found = find(effect);
+  return found == nullptr ? WorkshopWords{effect, "", ""} : found->workshop;
 }
 
 std::string described(const std::string& effect, const std::string& form, const std::vector<std::string>& open_forms) {

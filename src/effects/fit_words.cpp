@@ -15,14 +15,16 @@ namespace pmg::effects {
 namespace {
 
 struct OwnWord {
-  const char* word;
-  const char* parameter;
+  const char *word, *parameter, *shows, *needs;
 };
 
 /// What no diagnosis looks for.
-constexpr OwnWord kOnlyFits[] = {{"presliding", "friction.presliding_rad"},
-                                 {"velocity_lag", "sensor.velocity_lag_s"},
-                                 {"brake", "drive.brake_when_disabled"}};
+constexpr OwnWord kOnlyFits[] = {
+    {"presliding", "friction.presliding_rad", "held by friction, the joint gives way a little before it slides",
+     "small steps, and rests"},
+    {"velocity_lag", "sensor.velocity_lag_s", "rings more than damping explains", "steps at two settings of kd"},
+    {"brake", "drive.brake_when_disabled",
+     "a voltage servo that is switched off still brakes the joint by its back-EMF", "the drive switched off"}};
 
 struct FormerWord {
   const char* word;
@@ -52,16 +54,19 @@ std::vector<std::string> fit_words() {
 
 FitWord fit_word(const std::string& word) {
   for (const Effect& effect : catalogue()) {
-    if (word == effect.name) return {effect.forms.front().parameters, ""};
+    if (word == effect.name) return {effect.forms.front().parameters, "", effect.shows, effect.needs};
   }
   for (const OwnWord& own : kOnlyFits) {
-    if (word == own.word) return {{own.parameter}, ""};
+    if (word == own.word) return {{own.parameter}, "", own.shows, own.needs};
   }
   for (const FormerWord& former : kFormer) {
-    if (word == former.word) return {fit_word(former.today).parameters, former.today};
+    if (word != former.word) continue;
+    FitWord found = fit_word(former.today);
+    found.today = former.today;
+    return found;
   }
   std::vector<std::string> known = parameter_names();
-  if (contains(known, word)) return {{word}, ""};
+  if (contains(known, word)) return {{word}, "", "", ""};
   const std::vector<std::string> words = fit_words();
   known.insert(known.end(), words.begin(), words.end());
   for (const FormerWord& former : kFormer) known.emplace_back(former.word);

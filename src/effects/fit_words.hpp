@@ -12,6 +12,7 @@ std::vector<std::string> fit_words();
 struct FitWord {
   std::vector<std::string> parameters;  ///< of model::actuator_parameters, or load.inertia_scale, load.gravity_scale
   std::string today;                    ///< today's word, if this one is of an earlier version; else empty
+  std::string shows, needs;             ///< as an effect's; empty for a parameter
 };
 
 /// (word, or a parameter's own name) => (what is fitted: of an effect the parameters of its first form). Throws

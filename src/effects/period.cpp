@@ -101,9 +101,7 @@ std::vector<TriedPeriod> best_apart(std::vector<TriedPeriod> all, double share) 
 
 }  // namespace
 
-bool is_period(const std::string& parameter) {
-  return parameter == "command.hold_s" || parameter == "command.update_s" || parameter == "sensor.hold_s";
-}
+bool is_period(const std::string& parameter) { return calib::quantity(parameter) == model::Quantity::kPeriod; }
 
 std::vector<double> promising_periods_s(const NestedFit& fit, const calib::JointModel& model,
                                         const std::string& parameter, double low_s, double high_s) {

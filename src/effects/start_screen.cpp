@@ -29,7 +29,7 @@ struct Wave {
 std::vector<Wave> waves_of(const Form& form) {
   std::vector<Wave> found;
   for (std::size_t p = 1; p < form.parameters.size(); ++p) {
-    if (!form.parameters[p].ends_with("phase_rad")) continue;
+    if (calib::quantity(form.parameters[p]) != model::Quantity::kPhase) continue;
     const std::size_t amplitude = p - (is_order(form.parameters[p - 1]) ? 2 : 1);
     found.push_back({form.parameters[amplitude], form.parameters[p]});
   }
@@ -184,7 +184,7 @@ std::vector<ScreenedStart> StartScreen::at(const Effect& effect, std::size_t for
 std::vector<std::vector<double>> StartScreen::promising_waves(const Effect& effect, std::size_t form_index,
                                                               const BenchScale& scale) const {
   const Form& form = effect.forms.at(form_index);
-  if (fit_.runs().size() <= kRunsForOrders) return starts(effect, form, current_.model, scale);
+  if (fit_.runs().size() <= kRunsForOrders) return form.starts_at(current_.model, scale);
   const NestedFit few(calib::spread(fit_.runs(), kRunsForOrders), fit_.threads());
   std::vector<std::vector<double>> found;
   for (const ScreenedStart& start : StartScreen(few, current_).best(effect, form_index, scale)) {
@@ -201,7 +201,7 @@ std::vector<ScreenedStart> StartScreen::best(const Effect& effect, std::size_t f
   const Form& form = effect.forms.at(form_index);
   const bool waves = !waves_of(form).empty();
   const std::vector<std::vector<double>> grid =
-      has_order(form) ? promising_waves(effect, form_index, scale) : starts(effect, form, current_.model, scale);
+      has_order(form) ? promising_waves(effect, form_index, scale) : form.starts_at(current_.model, scale);
   for (const std::vector<double>& values : grid) {
     if (waves)
       screen_waves(form, values, found);

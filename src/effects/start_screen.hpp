@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "effects/catalogue.hpp"
 #include "effects/nested_fit.hpp"
-#include "effects/starts.hpp"
 
 namespace pmg::effects {
 

@@ -1,7 +1,6 @@
 #include "effects/strengths.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "calib/fit_problem.hpp"
@@ -25,24 +24,28 @@ Eigen::VectorXd from_neutral(const NestedModel& model, const Forms& forms, const
 
 }  // namespace
 
-std::vector<std::string> strengths(const std::string& effect, const Forms& forms) {
-  constexpr std::array kShapes = {"drive.supply_sag_slow_share",
-                                  "drive.supply_sag_time_s",
-                                  "friction.stribeck_rad_s",
-                                  "ripple.order",
-                                  "ripple.phase_rad",
-                                  "sensor.eccentricity_order",
-                                  "sensor.eccentricity_phase_rad",
-                                  "sensor.ellipticity_phase_rad",
-                                  "thermal.cooling_s",
-                                  "thermal.torque_fade_s",
-                                  "transmission.damping_Nm_s_per_rad"};
-  std::vector<std::string> found = form_of(effect, forms).parameters;
+std::vector<std::string> strengths(const std::string& effect_name, const Forms& forms) {
+  std::vector<std::string> found = form_of(effect_name, forms).parameters;
   std::erase_if(found, [&](const std::string& name) {
-    const bool shape = std::find(kShapes.begin(), kShapes.end(), name) != kShapes.end();
-    return shape || (effect == "backlash" && name == "transmission.stiffness_Nm_per_rad");
+    const model::Quantity quantity = calib::quantity(name);
+    return quantity == model::Quantity::kOrder || quantity == model::Quantity::kPhase ||
+           quantity == model::Quantity::kTimeConstant || contains(effect(effect_name).shapes, name);
   });
   return found;
+}
+
+std::vector<double> measured_strength(const evidence::Signature& check, const model::ActuatorParameters& joint,
+                                      double fastest_rad_s, const evidence::SignatureOptions& options) {
+  const Effect& of = effect(check.effect);
+  const double value = check.value.value;
+  if (of.strength == nullptr || !std::isfinite(value)) return {};
+  // Of a voltage servo the balance is in volts.
+  const double torque_Nm = joint.drive.back_emf_s_per_rad > 0.0 ? value * joint.drive.torque_per_unit_Nm : value;
+  return of.strength({value, torque_Nm, joint, options.slow_share * fastest_rad_s});
+}
+
+bool has_its_sign(const evidence::Signature& check) {
+  return !effect(check.effect).never_negative || !(check.value.value < 0.0);
 }
 
 bool has_other_sign(const std::string& effect, const calib::JointModel& model) {

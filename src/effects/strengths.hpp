@@ -5,12 +5,22 @@
 #include <vector>
 
 #include "effects/extension.hpp"
+#include "evidence/signature.hpp"
 
 namespace pmg::effects {
 
 /// The parameters of an effect's form that are neutral without it. Not its shape: a speed, an order, a phase, a
 /// damping.
 std::vector<std::string> strengths(const std::string& effect, const Forms& forms);
+
+/// (check, joint without the effect, fastest speed [rad/s]) => (values of the effect's parameters in the catalogue's
+/// order; empty for checks whose value is no parameter). A value in volts counts torque_per_unit_Nm each.
+std::vector<double> measured_strength(const evidence::Signature& check, const model::ActuatorParameters& joint,
+                                      double fastest_rad_s, const evidence::SignatureOptions& options);
+
+/// False where the check measures the other sign than the effect's physics has. Friction that is smaller at low speed
+/// than at high speed is viscous friction that levels off, and not Stribeck friction.
+bool has_its_sign(const evidence::Signature& check);
 
 /// True if the effect's strength has the other sign than its physics: a Stribeck term below zero is viscous friction
 /// that levels off.

@@ -12,6 +12,7 @@ namespace pmg::effects {
 namespace {
 
 using calib::JointModel;
+using model::Quantity;
 
 /// Nominal drive torque at a recorded position, kp e clamped to the drive's limit, without delays; or the recorded
 /// torque.
@@ -102,76 +103,82 @@ double Unknown::value(double coordinate) const {
 // is delayed by whole simulation steps, so a smaller difference of the delay would change nothing.
 fitting::Coordinate Unknown::range() const {
   constexpr double kDelayStep_s = 2.5e-3, kLogarithmStep = 1e-2, kShareOfTypical = 5e-3;
-  const bool delay = name == "command.delay_s" || name == "sensor.delay_s" || name == "drive.torque_delay_s";
-  const double step = difference > 0.0 ? difference
-                      : delay          ? kDelayStep_s
-                      : logarithmic    ? kLogarithmStep
-                                       : kShareOfTypical * typical;
+  const double step = difference > 0.0               ? difference
+                      : quantity == Quantity::kDelay ? kDelayStep_s
+                      : logarithmic                  ? kLogarithmStep
+                                                     : kShareOfTypical * typical;
   return {coordinate(lower), coordinate(upper), step, expected, deviation};
+}
+
+Usual usual(Quantity quantity, const BenchScale& scale) {
+  using enum Quantity;
+  const double torque = scale.torque_Nm, peak = scale.torque_peak_Nm, speed = scale.speed_rad_s;
+  const double damping = torque / speed, quadratic = torque / (speed * speed), square = torque * torque;
+  const double per_energy = 1.0 / (torque * speed * scale.duration_s);
+  switch (quantity) {
+    case kTorque:
+      return {torque, torque, 5.0 * peak};
+    case kDamping:
+      return {damping, damping, 10.0 * damping};
+    case kQuadraticDamping:
+      return {quadratic, quadratic, 10.0 * quadratic};
+    case kPerTorque:
+      return {0.3 / torque, 1.0 / peak};
+    case kPerHeat:
+      return {0.1 / square, 1.0 / square, 10.0 * (0.1 / square), -10.0 * (0.1 / square)};
+    case kPerEnergy:
+      return {per_energy, 1.0 / (0.1 * torque * speed * scale.duration_s), 100.0 * per_energy, -100.0 * per_energy};
+    case kOutput:
+      return {scale.output, scale.output, 5.0 * scale.output};
+    case kOutputRate:
+      return {1.0, scale.output, 1e3 * scale.output, scale.output};
+    case kPower:
+      return {1.0, peak * speed, 10.0 * peak * speed, 0.02 * torque * speed};
+    case kSpeed:
+      return {speed, speed, 10.0 * speed, 0.02 * speed};
+    case kAcceleration:
+      return {1.0, speed, 1e3 * speed, speed};
+    case kPerKelvin:
+      return {0.02};
+    case kDelay:
+    case kPeriod:
+    case kLag:
+      return {0.01, 1e-3};
+    case kTimeConstant:
+      return {0.01};
+    case kAngle:
+    case kQuantum:
+      return {0.05 * (scale.position_high_rad - scale.position_low_rad)};
+    case kOrder:
+    case kPhase:
+      return {1.0};
+    default:
+      return {0.3};
+  }
 }
 
 Unknown unknown(const std::string& name, const bench::Bench& bench, const BenchScale& scale) {
   Unknown u{calib::fit_parameter(name, bench)};
-  const double torque = scale.torque_Nm, speed = scale.speed_rad_s;
-  if (u.unit.starts_with("Nm s^2")) {
-    u.typical = torque / (speed * speed);
-    u.upper = std::max(u.upper, 10.0 * u.typical);
-  } else if (u.unit.starts_with("Nm s")) {
-    u.typical = torque / speed;
-    u.upper = std::max(u.upper, 10.0 * u.typical);
-  } else if (u.unit == "Nm") {
-    u.typical = torque;
-    u.upper = std::max(u.upper, 5.0 * scale.torque_peak_Nm);
-  } else if (u.unit.starts_with("1/(Nm^2")) {
-    u.typical = 0.1 / (torque * torque);
-    u.lower = std::min(u.lower, -10.0 * u.typical);
-    if (u.upper > 0.0) u.upper = std::max(u.upper, 10.0 * u.typical);
-  } else if (u.unit == "1/J") {
-    u.typical = 1.0 / (torque * speed * scale.duration_s);
-    u.lower = std::min(u.lower, -100.0 * u.typical);
-    u.upper = std::max(u.upper, 100.0 * u.typical);
-  } else if (u.unit == "unit") {
-    u.typical = scale.output;
-    u.upper = std::max(u.upper, 5.0 * scale.output);
-  } else if (u.unit == "unit/s") {
-    u.lower = std::min(u.lower, scale.output);
-    u.upper = std::max(u.upper, 1e3 * scale.output);
-  } else if (u.unit == "W") {
-    u.lower = std::min(u.lower, 0.02 * torque * speed);
-    u.upper = std::max(u.upper, 10.0 * scale.torque_peak_Nm * speed);
-  } else if (u.unit == "rad/s^2") {
-    u.lower = std::min(u.lower, speed);
-    u.upper = std::max(u.upper, 1e3 * speed);
-  } else if (u.unit == "1/K") {
-    u.typical = 0.02;
-  } else if (u.unit == "1/Nm") {
-    u.typical = 0.3 / torque;
-    u.upper = 3.0 / scale.torque_peak_Nm;  // a source three times as weak as the motor it feeds
-  } else if (u.unit == "s") {
-    u.typical = 0.01;
-    constexpr double kFastSource_s = 0.01;  // quicker than a joint moves: a resistance
-    if (name == "drive.supply_sag_time_s") u.lower = kFastSource_s;
-  } else if (u.unit == "rad") {
-    u.typical = 0.05 * (scale.position_high_rad - scale.position_low_rad);
-  } else if (u.unit == "rad/s") {
-    u.typical = speed;
-    u.lower = std::min(u.lower, 0.02 * speed);
-    u.upper = std::max(u.upper, 10.0 * speed);
-  } else {
-    u.typical = 0.3;
-  }
-  u.logarithmic = u.lower > 0.0 && u.upper / u.lower >= 10.0 && !is_order(name);
-  // With less than one period over the range of motion, a wave is a proxy for an offset or a slope.
-  if (is_order(name)) u.lower = std::max(u.lower, lowest_order(scale)), u.typical = 1.0;
-  if (name.ends_with("phase_rad")) u.lower = -10.0, u.upper = 10.0, u.typical = 1.0;
+  const Usual here = usual(u.quantity, scale);
+  u.typical = here.typical;
+  u.lower = std::min(u.lower, here.lowest);
+  if (u.upper > 0.0) u.upper = std::max(u.upper, here.highest);
+  // A source three times as weak as the motor it feeds.
+  if (u.quantity == Quantity::kPerTorque) u.upper = 3.0 / scale.torque_peak_Nm;
+  constexpr double kFastSource_s = 0.01;  // quicker than a joint moves: a resistance
+  if (name == "drive.supply_sag_time_s") u.lower = kFastSource_s;
   if (name == "transmission.armature_kg_m2") u.lower = std::min(u.lower, 1e-4 * scale.inertia_kg_m2);
+  u.logarithmic = u.lower > 0.0 && u.upper / u.lower >= 10.0 && u.quantity != Quantity::kOrder;
+  // With less than one period over the range of motion, a wave is a proxy for an offset or a slope.
+  if (u.quantity == Quantity::kOrder) u.lower = std::max(u.lower, lowest_order(scale));
+  if (u.quantity == Quantity::kPhase) u.lower = -10.0, u.upper = 10.0;
   return u;
 }
 
-bool is_order(const std::string& parameter) {
-  return parameter == "ripple.order" || parameter == "sensor.eccentricity_order";
-}
+bool is_order(const std::string& parameter) { return calib::quantity(parameter) == Quantity::kOrder; }
 
-bool is_jagged(const std::string& parameter) { return is_period(parameter) || parameter == "sensor.quantum_rad"; }
+bool is_jagged(const std::string& parameter) {
+  return is_period(parameter) || calib::quantity(parameter) == Quantity::kQuantum;
+}
 
 }  // namespace pmg::effects

@@ -1,6 +1,7 @@
 // The free parameters of a diagnosis fit: ranges, difference steps, priors and start values.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,15 @@ struct Unknown : calib::FitParameter {
   fitting::Coordinate range() const;  ///< bounds, difference step and prior of the coordinate
   bool operator==(const Unknown&) const = default;
 };
+
+/// What a bench's motion makes usual for a quantity.
+struct Usual {
+  double typical;      ///< a change that matters
+  double start = 1.0;  ///< the unit of the catalogue's start values
+  double highest = -std::numeric_limits<double>::infinity(),
+         lowest = std::numeric_limits<double>::infinity();  ///< a search reaches them at least
+};
+Usual usual(model::Quantity quantity, const BenchScale& scale);
 
 /// (parameter name, bench, scale) => (unknown with its whole plausible range on this bench).
 Unknown unknown(const std::string& name, const bench::Bench& bench, const BenchScale& scale);

@@ -1,6 +1,7 @@
 // Parameters of one joint's drive and transmission. Each group is one kind of effect and neutral by default.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <span>
 #include <string_view>
@@ -155,13 +156,56 @@ struct ActuatorParameters {
   bool operator==(const ActuatorParameters&) const = default;
 };
 
-/// One number of ActuatorParameters: its name in motor.yaml, and the range of its search in a fit.
+/// What a parameter measures: its unit, and how a bench's size scales its search.
+enum class Quantity {
+  kFactor,  ///< any number without a unit that is none of the others
+  kOrder,   ///< periods of a wave over a turn
+  kDelay,
+  kPeriod,  ///< of a sample and hold
+  kLag,
+  kTimeConstant,
+  kAngle,
+  kPhase,    ///< of a wave over a turn
+  kQuantum,  ///< of a sensor
+  kSpeed,
+  kAcceleration,
+  kTorque,
+  kDamping,
+  kQuadraticDamping,
+  kStiffness,
+  kHardening,
+  kTorquePerOutput,
+  kInertia,
+  kPower,
+  kPerTorque,
+  kPerHeat,  ///< of a winding: torque^2 times time
+  kPerEnergy,
+  kPerKelvin,
+  kOutput,
+  kOutputRate,
+  kBackEmf,
+};
+
+/// "Nm s/rad" of a turning joint; empty for a number without a unit.
+std::string_view unit(Quantity quantity);
+
+/// How much larger a range of search is on a linear axis, which moves kilograms by hundreds of newtons.
+double factor_on_linear_axis(Quantity quantity);
+
+/// True if it doubles where all torques and inertias do.
+bool follows_torque(Quantity quantity);
+
+enum class Allowed { kAny, kNotNegative, kPositive, kShare, kWithinOne };
+
+/// One number of ActuatorParameters: its name in motor.yaml, the range of its search in a fit, and what it may be.
 struct ActuatorParameter {
   std::string_view name;  ///< "friction.coulomb_Nm": group and key
-  std::string_view unit;
+  Quantity quantity;
   double lower, upper;  ///< of a search; a file may exceed them
-  bool may_be_negative;
+  Allowed allowed;
+  double example;  ///< shows on a joint of some Nm: what pictures and comparisons of simulations take
   double& (*in)(ActuatorParameters&);
+  bool may_be_negative() const { return allowed == Allowed::kAny || allowed == Allowed::kWithinOne; }
   std::string_view group() const { return name.substr(0, name.find('.')); }
   std::string_view key() const { return name.substr(name.find('.') + 1); }
   double value(const ActuatorParameters& parameters) const {
@@ -170,9 +214,100 @@ struct ActuatorParameter {
   }
 };
 
-/// All numbers but those of residual_torque, in the order of motor.yaml. A further effect is a group above and its rows
-/// here.
-std::span<const ActuatorParameter> actuator_parameters();
+#define PMG_ACTUATOR_PARAMETER(group, key, quantity, lower, upper, allowed, example) \
+  ActuatorParameter {                                                                \
+#group "." #key, quantity, lower, upper, allowed, example,                       \
+        [](ActuatorParameters & p) -> double& { return p.group.key; }                \
+  }
+
+/// All numbers but those of residual_torque, in the order of motor.yaml. A further parameter is a member above and its
+/// row here. The ranges cover joints from a hobby servo's to a humanoid's knee; a linear rig scales them.
+inline constexpr auto kActuatorParameters = [] {
+  using enum Quantity;
+  using enum Allowed;
+  return std::array{
+      PMG_ACTUATOR_PARAMETER(command, delay_s, kDelay, 0.0, 0.06, kNotNegative, 0.0605),
+      PMG_ACTUATOR_PARAMETER(command, update_s, kPeriod, 0.0, 0.2, kNotNegative, 0.033),
+      PMG_ACTUATOR_PARAMETER(command, rate_limit_rad_s, kSpeed, 1.0, 30.0, kPositive, 1.5),
+      PMG_ACTUATOR_PARAMETER(command, acceleration_limit_rad_s2, kAcceleration, 1.0, 1000.0, kPositive, 25.0),
+      PMG_ACTUATOR_PARAMETER(command, hold_s, kPeriod, 0.0, 0.04, kNotNegative, 0.025),
+      PMG_ACTUATOR_PARAMETER(drive, kp_scale, kFactor, 0.05, 20.0, kNotNegative, 0.6),
+      PMG_ACTUATOR_PARAMETER(drive, kd_scale, kFactor, 0.02, 50.0, kNotNegative, 1.4),
+      PMG_ACTUATOR_PARAMETER(drive, limit, kOutput, 0.05, 200.0, kNotNegative, 6.0),
+      PMG_ACTUATOR_PARAMETER(drive, dead_band_rad, kAngle, 0.0, 0.1, kNotNegative, 0.08),
+      PMG_ACTUATOR_PARAMETER(drive, dead_band_subtracts, kFactor, 0.0, 1.0, kShare, 0.8),
+      PMG_ACTUATOR_PARAMETER(drive, dead_band_wake_rad, kAngle, 0.0, 0.1, kNotNegative, 0.04),
+      PMG_ACTUATOR_PARAMETER(drive, output_dead_band, kOutput, 0.0, 20.0, kNotNegative, 0.4),
+      PMG_ACTUATOR_PARAMETER(drive, output_rate_limit_per_s, kOutputRate, 0.5, 5000.0, kPositive, 150.0),
+      PMG_ACTUATOR_PARAMETER(drive, torque_delay_s, kDelay, 0.0, 0.06, kNotNegative, 0.0051),
+      PMG_ACTUATOR_PARAMETER(drive, torque_per_unit_Nm, kTorquePerOutput, 0.01, 5.0, kNotNegative, 1.3),
+      PMG_ACTUATOR_PARAMETER(drive, torque_scale, kFactor, 0.2, 5.0, kPositive, 0.8),
+      PMG_ACTUATOR_PARAMETER(drive, saturation_per_Nm, kPerTorque, 0.0, 2.0, kNotNegative, 0.1),
+      PMG_ACTUATOR_PARAMETER(drive, back_emf_s_per_rad, kBackEmf, 0.01, 10.0, kNotNegative, 0.3),
+      PMG_ACTUATOR_PARAMETER(drive, supply_sag_per_Nm, kPerTorque, 0.0, 1.0, kNotNegative, 0.2),
+      PMG_ACTUATOR_PARAMETER(drive, supply_sag_time_s, kTimeConstant, 0.0, 5.0, kNotNegative, 0.1),
+      PMG_ACTUATOR_PARAMETER(drive, supply_sag_slow_share, kFactor, 0.0, 1.0, kShare, 0.7),
+      PMG_ACTUATOR_PARAMETER(drive, supply_limit_Nm, kTorque, 0.05, 400.0, kPositive, 2.0),
+      PMG_ACTUATOR_PARAMETER(drive, brake_when_disabled, kFactor, 0.0, 1.0, kNotNegative, 0.5),
+      PMG_ACTUATOR_PARAMETER(drive, stall_torque_Nm, kTorque, 0.1, 400.0, kNotNegative, 8.0),
+      PMG_ACTUATOR_PARAMETER(drive, no_load_rad_s, kSpeed, 1.0, 60.0, kPositive, 3.5),
+      PMG_ACTUATOR_PARAMETER(drive, most_power_W, kPower, 0.2, 5000.0, kPositive, 2.0),
+      PMG_ACTUATOR_PARAMETER(drive, cut_speed_rad_s, kSpeed, 0.5, 60.0, kPositive, 1.2),
+      PMG_ACTUATOR_PARAMETER(sensor, zero_offset_rad, kAngle, -0.15, 0.15, kAny, 0.3),
+      PMG_ACTUATOR_PARAMETER(sensor, hysteresis_rad, kAngle, 0.0, 0.1, kNotNegative, 0.06),
+      PMG_ACTUATOR_PARAMETER(sensor, eccentricity_rad, kAngle, 0.0, 0.1, kNotNegative, 0.15),
+      PMG_ACTUATOR_PARAMETER(sensor, eccentricity_order, kOrder, 1.0, 64.0, kNotNegative, 5.0),
+      PMG_ACTUATOR_PARAMETER(sensor, eccentricity_phase_rad, kPhase, -3.15, 3.15, kAny, 0.7),
+      PMG_ACTUATOR_PARAMETER(sensor, ellipticity_rad, kAngle, 0.0, 0.1, kNotNegative, 0.03),
+      PMG_ACTUATOR_PARAMETER(sensor, ellipticity_phase_rad, kPhase, -3.15, 3.15, kAny, -0.6),
+      PMG_ACTUATOR_PARAMETER(sensor, quantum_rad, kQuantum, 0.0, 0.02, kNotNegative, 0.02),
+      PMG_ACTUATOR_PARAMETER(sensor, delay_s, kDelay, 0.0, 0.06, kNotNegative, 0.0067),
+      PMG_ACTUATOR_PARAMETER(sensor, lag_s, kLag, 0.0, 0.03, kNotNegative, 0.012),
+      PMG_ACTUATOR_PARAMETER(sensor, lag_stages, kFactor, 1.0, 3.0, kNotNegative, 2.0),
+      PMG_ACTUATOR_PARAMETER(sensor, velocity_lag_s, kLag, 0.0, 0.03, kNotNegative, 0.008),
+      PMG_ACTUATOR_PARAMETER(sensor, hold_s, kPeriod, 0.0, 0.1, kNotNegative, 0.009),
+      PMG_ACTUATOR_PARAMETER(sensor, on_motor, kFactor, 0.0, 1.0, kShare, 1.0),
+      PMG_ACTUATOR_PARAMETER(transmission, armature_kg_m2, kInertia, 1e-4, 0.5, kNotNegative, 0.03),
+      PMG_ACTUATOR_PARAMETER(transmission, stiffness_Nm_per_rad, kStiffness, 5.0, 5000.0, kNotNegative, 40.0),
+      PMG_ACTUATOR_PARAMETER(transmission, hardening_Nm_per_rad3, kHardening, 10.0, 1e8, kNotNegative, 4e3),
+      PMG_ACTUATOR_PARAMETER(transmission, damping_Nm_s_per_rad, kDamping, 0.0, 10.0, kNotNegative, 0.1),
+      PMG_ACTUATOR_PARAMETER(transmission, backlash_rad, kAngle, 0.0, 0.1, kNotNegative, 0.06),
+      PMG_ACTUATOR_PARAMETER(transmission, friction_on_joint, kFactor, 0.0, 1.0, kShare, 0.7),
+      PMG_ACTUATOR_PARAMETER(friction, viscous_Nm_s_per_rad, kDamping, 0.0, 5.0, kNotNegative, 0.8),
+      PMG_ACTUATOR_PARAMETER(friction, viscous_quadratic_Nm_s2_per_rad2, kQuadraticDamping, 0.0, 2.0, kNotNegative,
+                             0.15),
+      PMG_ACTUATOR_PARAMETER(friction, viscous_asymmetry, kFactor, -0.95, 0.95, kWithinOne, 0.4),
+      PMG_ACTUATOR_PARAMETER(friction, coulomb_Nm, kTorque, 0.0, 10.0, kNotNegative, 0.8),
+      PMG_ACTUATOR_PARAMETER(friction, stribeck_Nm, kTorque, -5.0, 5.0, kAny, 0.4),
+      PMG_ACTUATOR_PARAMETER(friction, stribeck_rad_s, kSpeed, 0.01, 5.0, kPositive, 0.3),
+      PMG_ACTUATOR_PARAMETER(friction, stribeck_exponent, kFactor, 0.3, 4.0, kPositive, 0.7),
+      PMG_ACTUATOR_PARAMETER(friction, stribeck_asymmetry, kFactor, -1.0, 1.0, kWithinOne, -0.5),
+      PMG_ACTUATOR_PARAMETER(friction, load_driving, kFactor, 0.0, 2.0, kNotNegative, 0.4),
+      PMG_ACTUATOR_PARAMETER(friction, load_backdriving, kFactor, 0.0, 0.9, kNotNegative, 0.4),
+      PMG_ACTUATOR_PARAMETER(friction, load_by_motor, kFactor, 0.0, 1.0, kShare, 0.6),
+      PMG_ACTUATOR_PARAMETER(friction, load_net, kFactor, 0.0, 1.0, kShare, 0.4),
+      PMG_ACTUATOR_PARAMETER(friction, asymmetry, kFactor, -0.95, 0.95, kAny, 0.7),
+      PMG_ACTUATOR_PARAMETER(friction, presliding_rad, kAngle, 1e-4, 0.05, kPositive, 0.003),
+      PMG_ACTUATOR_PARAMETER(thermal, friction_per_K, kPerKelvin, -0.1, 0.1, kAny, 0.04),
+      PMG_ACTUATOR_PARAMETER(thermal, viscous_per_K, kPerKelvin, -0.1, 0.1, kAny, -0.03),
+      PMG_ACTUATOR_PARAMETER(thermal, torque_per_K, kPerKelvin, -0.05, 0.05, kAny, -0.004),
+      PMG_ACTUATOR_PARAMETER(thermal, resistance_per_K, kPerKelvin, 0.0, 0.02, kNotNegative, 0.0039),
+      PMG_ACTUATOR_PARAMETER(thermal, friction_per_Nm2_s, kPerHeat, -0.2, 0.2, kAny, 0.3),
+      PMG_ACTUATOR_PARAMETER(thermal, friction_per_J, kPerEnergy, -5.0, 5.0, kAny, -0.4),
+      PMG_ACTUATOR_PARAMETER(thermal, torque_per_Nm2_s, kPerHeat, -0.5, 0.0, kAny, -0.04),
+      PMG_ACTUATOR_PARAMETER(thermal, cooling_s, kTimeConstant, 1.0, 1000.0, kPositive, 0.2),
+      PMG_ACTUATOR_PARAMETER(thermal, torque_fade_share, kFactor, 0.0, 0.9, kShare, 0.4),
+      PMG_ACTUATOR_PARAMETER(thermal, torque_fade_s, kTimeConstant, 0.1, 100.0, kPositive, 0.1),
+      PMG_ACTUATOR_PARAMETER(ripple, amplitude_Nm, kTorque, 0.0, 2.0, kNotNegative, 0.5),
+      PMG_ACTUATOR_PARAMETER(ripple, torque_share, kFactor, 0.0, 0.9, kNotNegative, 0.3),
+      PMG_ACTUATOR_PARAMETER(ripple, order, kOrder, 1.0, 64.0, kNotNegative, 12.0),
+      PMG_ACTUATOR_PARAMETER(ripple, phase_rad, kPhase, -3.15, 3.15, kAny, 0.4),
+      PMG_ACTUATOR_PARAMETER(ripple, offset_Nm, kTorque, -5.0, 5.0, kAny, 1.0),
+  };
+}();
+#undef PMG_ACTUATOR_PARAMETER
+
+inline std::span<const ActuatorParameter> actuator_parameters() { return kActuatorParameters; }
 
 /// Throws std::invalid_argument that lists the names if there is no such parameter.
 const ActuatorParameter& actuator_parameter(std::string_view name);

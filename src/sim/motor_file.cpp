@@ -28,7 +28,7 @@ model::ActuatorParameters read_actuator(files::ConfigReader& joint) {
         continue;
       }
       p.in(parameters) = reader->required<double>(std::string(p.key()),
-                                                  p.may_be_negative ? files::any_number() : files::non_negative());
+                                                  p.may_be_negative() ? files::any_number() : files::non_negative());
     }
     if (reader)
       reader->finish();

@@ -38,7 +38,7 @@ class SetValues {
                                       own = actuator_in_force(joint, {});
       for (const model::ActuatorParameter& p : model::actuator_parameters()) {
         number(fmt::format("{}: {}", joint.name, p.name), p.value(set), p.value(own),
-               fmt::format(" {}", p.unit).c_str());
+               fmt::format(" {}", unit(p.quantity)).c_str());
       }
     }
   }

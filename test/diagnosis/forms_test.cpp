@@ -15,7 +15,6 @@
 #include "effects/extension.hpp"
 #include "effects/folds.hpp"
 #include "effects/form_choice.hpp"
-#include "effects/starts.hpp"
 
 namespace pmg::diagnosis {
 namespace {
@@ -73,7 +72,7 @@ TEST(Forms, EveryStartOfEveryFormCanBeSimulatedAndShows) {
     for (const Effect& effect : effects::catalogue()) {
       for (const Form& form : effect.forms) {
         bool shows = false;
-        for (const std::vector<double>& values : starts(effect, form, joint.model, scale)) {
+        for (const std::vector<double>& values : form.starts_at(joint.model, scale)) {
           ASSERT_EQ(values.size(), form.parameters.size()) << effect.name << " " << form.name;
           calib::JointModel with = joint.model;
           for (const effects::FixedValue& fixed : form.fixed) calib::set(with, fixed.parameter, fixed.value);
@@ -106,10 +105,10 @@ TEST(Forms, FixedValuesAloneChangeNothing) {
 }
 
 /// The form's parameters at their first start, and its fixed values.
-calib::JointModel in_form(const Joint& joint, calib::JointModel model, const Effect& effect, const Form& form) {
+calib::JointModel in_form(const Joint& joint, calib::JointModel model, const Form& form) {
   const effects::BenchScale scale = effects::scale_of(joint.bench, joint.runs, joint.model);
   for (const effects::FixedValue& fixed : form.fixed) calib::set(model, fixed.parameter, fixed.value);
-  const auto values = starts(effect, form, joint.model, scale);
+  const auto values = form.starts_at(joint.model, scale);
   for (std::size_t p = 0; !values.empty() && p < form.parameters.size(); ++p)
     calib::set(model, form.parameters[p], values.front()[p]);
   return model;
@@ -133,7 +132,7 @@ TEST(Forms, AnEffectLeavesTheModelInWhateverFormItWas) {
   const Fits of(joint);
   for (const Effect& effect : effects::catalogue()) {
     for (const Form& form : effect.forms) {
-      const calib::JointModel with = in_form(joint, joint.model, effect, form);
+      const calib::JointModel with = in_form(joint, joint.model, form);
       const calib::JointModel without = of.fits.without(with, effect.name, {}, {});
       EXPECT_EQ(without.actuator, joint.model.actuator) << effect.name << " " << form.name;
       EXPECT_EQ(without.gravity_scale, 1.0);
@@ -146,7 +145,7 @@ TEST(Forms, WhatAKeptEffectsFormNeedsStays) {
   const Fits of(joint);
   const Effect& compliance = effects::effect("compliance");
   ASSERT_EQ(compliance.forms[1].name, "spring_before");
-  const calib::JointModel with = in_form(joint, joint.model, compliance, compliance.forms[1]);
+  const calib::JointModel with = in_form(joint, joint.model, compliance.forms[1]);
   const calib::JointModel kept = of.fits.without(with, "backlash", {"compliance"}, {{"compliance", 1}});
   EXPECT_EQ(kept.actuator, with.actuator);
   EXPECT_EQ(of.fits.without(with, "backlash", {"compliance"}, {}).actuator.transmission.friction_on_joint, 0.0)

@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "diagnosis_page/workshop.hpp"
 #include "effects/catalogue.hpp"
 
 namespace pmg::diagnosis_page {
@@ -130,7 +129,7 @@ TEST(FirstParagraph, HasNoTermOfTheFieldAndNoLongSentence) {
 
 TEST(Workshop, EveryEffectOfTheCatalogueHasACheck) {
   for (const effects::Effect& effect : effects::catalogue()) {
-    const WorkshopWords words = workshop_words(effect.name);
+    const effects::WorkshopWords& words = effect.workshop;
     EXPECT_NE(words.what, effect.title) << effect.name;
     EXPECT_THAT(words.check, testing::ContainsRegex("[.?]$")) << effect.name;
     EXPECT_THAT(words.cost, testing::ContainsRegex("[.]$")) << effect.name;

@@ -1,14 +1,13 @@
 #include "effects/fit_words.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-
 #include "calib/fit_problem.hpp"
 #include "effects/catalogue.hpp"
-#include "folders.hpp"
+#include "generated_table.hpp"
 
 namespace pmg::effects {
 namespace {
@@ -52,12 +51,14 @@ TEST(FitWords, AParameterIsItsOwnWord) {
 }
 
 TEST(FitWords, ThePageHasThemAll) {
-  std::ifstream stream(std::filesystem::path(pmg::test::project_folder()) / "docs/how-to/calibration.md");
-  std::string cells;  // of the first column
-  for (std::string line; std::getline(stream, line);) {
-    if (line.starts_with("| `")) cells += line.substr(0, line.find(" | "));
+  std::string rows;
+  for (const std::string& word : fit_words()) {
+    const FitWord found = fit_word(word);
+    rows +=
+        fmt::format("| `{}` | `{}` | {} | {} |\n", word, fmt::join(found.parameters, "`, `"), found.shows, found.needs);
   }
-  for (const std::string& word : fit_words()) EXPECT_THAT(cells, HasSubstr("`" + word + "`"));
+  test::expect_table("how-to/calibration.md", "| word | parameters of motor.yaml | how it shows | what shows it |",
+                     rows);
 }
 
 std::string refusal(const std::string& word) {

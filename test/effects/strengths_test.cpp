@@ -48,6 +48,12 @@ TEST(Strengths, AreWhatIsNeutralWithoutTheEffect) {
   EXPECT_EQ(strengths("stribeck", {}), std::vector<std::string>{"friction.stribeck_Nm"});
   EXPECT_EQ(strengths("backlash", {}), std::vector<std::string>{"transmission.backlash_rad"});
   EXPECT_EQ(strengths("compliance", {}), std::vector<std::string>{"transmission.stiffness_Nm_per_rad"});
+  EXPECT_EQ(strengths("supply_sag", {{"supply_sag", 1}}), std::vector<std::string>{"drive.supply_sag_per_Nm"});
+  EXPECT_EQ(strengths("self_heating", {{"self_heating", 3}}), std::vector<std::string>{"thermal.torque_fade_share"});
+  EXPECT_EQ(strengths("direction_friction", {{"direction_friction", 2}}),
+            (std::vector<std::string>{"friction.stribeck_asymmetry", "friction.stribeck_Nm"}));
+  EXPECT_EQ(strengths("eccentricity", {{"eccentricity", 1}}),
+            (std::vector<std::string>{"sensor.eccentricity_rad", "sensor.ellipticity_rad"}));
   for (const Effect& one : catalogue()) {
     for (std::size_t form = 0; form < one.forms.size(); ++form)
       EXPECT_FALSE(strengths(one.name, {{one.name, form}}).empty()) << one.name << ", " << one.forms[form].name;

@@ -7,7 +7,7 @@
 #include "calib/fit_problem.hpp"
 #include "diagnosis/random_bench.hpp"
 #include "effects/catalogue.hpp"
-#include "evidence/strength.hpp"
+#include "effects/strengths.hpp"
 
 namespace pmg::evidence {
 namespace {
@@ -124,7 +124,7 @@ TEST(MeasuredStrength, IsTheParameterThatWasPlanted) {
     model::ActuatorParameters base = made.truth.actuator;
     for (const Signature& check : signatures(made.bench, made.runs)) {
       if (check.effect != c.effect || check.check != "balance of torques") continue;
-      const std::vector<double> found = measured_strength(check, base, 1.0, {});
+      const std::vector<double> found = effects::measured_strength(check, base, 1.0, {});
       ASSERT_EQ(found.size(), effect.parameters.size()) << c.effect;
       for (const double value : found) EXPECT_NEAR(value, c.value, c.tolerance * c.value) << c.effect;
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -98,6 +99,22 @@ TEST(ActuatorModel, RefusesWhatMakesNoSense) {
       ADD_FAILURE() << name << " was accepted";
     } catch (const std::invalid_argument& error) {
       EXPECT_THAT(error.what(), testing::HasSubstr(name));
+    }
+  }
+}
+
+TEST(ActuatorModel, RefusesByItsNameWhatANumberMayNotBe) {
+  for (const model::ActuatorParameter& p : model::actuator_parameters()) {
+    if (p.allowed == model::Allowed::kAny) continue;
+    model::ActuatorParameters parameters;
+    p.in(parameters) = p.allowed == model::Allowed::kNotNegative ? -1e-3
+                       : p.allowed == model::Allowed::kPositive  ? 0.0
+                                                                 : 1.5;
+    try {
+      sim::ActuatorModel(parameters, 0.002);
+      ADD_FAILURE() << p.name << " may be " << p.value(parameters);
+    } catch (const std::invalid_argument& error) {
+      EXPECT_TRUE(std::string_view(error.what()).starts_with(p.name)) << error.what();
     }
   }
 }

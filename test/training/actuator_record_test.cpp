@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "effects/examples.hpp"
 #include "folders.hpp"
 #include "sim/actuator_model.hpp"
 #include "sim/motor_file.hpp"
@@ -28,11 +29,8 @@ constexpr double kOtherLibm_Nm = 1e-9;
 const std::string kActuatorRecord = pmg::test::project_folder() + "/test/data/training/actuators.json";
 
 /// Each effect by itself, then with what it meets.
-const std::map<std::string, Values> kCases = {
+const std::map<std::string, Values> kCombined = {
     {"neutral", {}},
-    {"delay", {{"command.delay_s", 0.0073}}},
-    {"rate limit", {{"command.rate_limit_rad_s", 1.5}}},
-    {"hold", {{"command.hold_s", 0.007}}},
     {"gains, limit, dead band",
      {{"drive.kp_scale", 0.9}, {"drive.kd_scale", 1.2}, {"drive.limit", 6.0}, {"drive.dead_band_rad", 0.02}}},
     {"voltage",
@@ -41,75 +39,26 @@ const std::map<std::string, Values> kCases = {
       {"drive.limit", 15.0},
       {"drive.supply_sag_per_Nm", 0.05},
       {"drive.brake_when_disabled", 0.5}}},
-    {"torque and speed", {{"drive.stall_torque_Nm", 9.0}, {"drive.no_load_rad_s", 4.0}}},
-    {"sensor", {{"sensor.zero_offset_rad", 0.03}, {"sensor.quantum_rad", 0.0015}}},
     {"hysteresis, eccentricity",
      {{"sensor.hysteresis_rad", 0.02},
       {"sensor.eccentricity_rad", 0.015},
       {"sensor.eccentricity_phase_rad", 0.7},
       {"sensor.zero_offset_rad", 0.01}}},
-    {"elliptic disc on the motor's shaft",
-     {{"sensor.eccentricity_rad", 0.01},
-      {"sensor.eccentricity_order", 5.0},
-      {"sensor.ellipticity_rad", 0.02},
-      {"sensor.ellipticity_phase_rad", -0.6}}},
-    {"lag", {{"sensor.lag_s", 0.006}}},
-    {"lag of a tracking loop", {{"sensor.lag_s", 0.009}, {"sensor.lag_stages", 2.0}}},
-    {"lag of a moving average", {{"sensor.lag_s", 0.009}, {"sensor.lag_stages", 3.0}}},
     {"velocity lag", {{"sensor.velocity_lag_s", 0.008}}},
-    {"friction",
-     {{"friction.viscous_Nm_s_per_rad", 0.3},
-      {"friction.coulomb_Nm", 0.8},
-      {"friction.stribeck_Nm", 0.4},
-      {"friction.stribeck_rad_s", 0.2},
-      {"friction.asymmetry", 0.15}}},
     {"friction under load",
      {{"friction.coulomb_Nm", 0.5},
       {"friction.load_driving", 0.12},
       {"friction.load_backdriving", 0.06},
       {"friction.presliding_rad", 0.003},
       {"transmission.armature_kg_m2", 0.03}}},
-    {"elastic",
-     {{"transmission.armature_kg_m2", 0.03},
-      {"transmission.stiffness_Nm_per_rad", 900.0},
-      {"transmission.damping_Nm_s_per_rad", 0.5},
-      {"transmission.backlash_rad", 0.01}}},
-    {"warm",
-     {{"thermal.friction_per_K", -0.02},
-      {"thermal.torque_per_K", -0.004},
-      {"drive.back_emf_s_per_rad", 0.2},
-      {"drive.brake_when_disabled", 0.5},
-      {"friction.viscous_Nm_s_per_rad", 0.3},
-      {"friction.coulomb_Nm", 0.8}}},
-    {"heats up", {{"thermal.friction_per_Nm2_s", -0.05}, {"thermal.cooling_s", 0.2}, {"friction.coulomb_Nm", 0.8}}},
-    {"ripple",
-     {{"ripple.amplitude_Nm", 0.5}, {"ripple.order", 12.0}, {"ripple.phase_rad", 0.4}, {"ripple.offset_Nm", -0.2}}},
-    {"ripple in proportion to the current",
-     {{"ripple.torque_share", 0.3},
-      {"ripple.order", 9.0},
-      {"ripple.phase_rad", 1.1},
-      {"drive.back_emf_s_per_rad", 0.3}}},
-    {"profile", {{"command.rate_limit_rad_s", 4.0}, {"command.acceleration_limit_rad_s2", 30.0}}},
     {"profile without a rate limit", {{"command.acceleration_limit_rad_s2", 20.0}}},
     {"update", {{"command.update_s", 0.033}, {"command.delay_s", 0.003}}},
     {"dead band that subtracts and sleeps",
      {{"drive.dead_band_rad", 0.05}, {"drive.dead_band_subtracts", 0.8}, {"drive.dead_band_wake_rad", 0.04}}},
     {"output", {{"drive.output_dead_band", 1.5}, {"drive.output_rate_limit_per_s", 300.0}}},
-    {"late output", {{"drive.torque_delay_s", 0.0051}}},
     {"late and slow output",
      {{"drive.torque_delay_s", 0.004}, {"drive.output_rate_limit_per_s", 150.0}, {"drive.limit", 9.0}}},
-    {"other torque", {{"drive.torque_scale", 0.8}, {"drive.saturation_per_Nm", 0.05}}},
-    {"battery",
-     {{"drive.limit", 10.0},
-      {"drive.supply_sag_per_Nm", 0.05},
-      {"drive.supply_sag_time_s", 0.04},
-      {"drive.supply_sag_slow_share", 0.7}}},
-    {"supply with a limit", {{"drive.limit", 15.0}, {"drive.supply_limit_Nm", 2.5}}},
-    {"power", {{"drive.most_power_W", 1.5}}},
-    {"overspeed guard", {{"drive.cut_speed_rad_s", 1.2}}},
     {"overspeed guard of a limited drive", {{"drive.cut_speed_rad_s", 1.2}, {"drive.limit", 8.0}}},
-    {"late readings", {{"sensor.delay_s", 0.0067}, {"sensor.quantum_rad", 0.001}}},
-    {"held readings", {{"sensor.hold_s", 0.009}}},
     {"sensor on the motor, hard shaft, friction behind it",
      {{"sensor.on_motor", 1.0},
       {"sensor.delay_s", 0.001},
@@ -128,9 +77,6 @@ const std::map<std::string, Values> kCases = {
       {"friction.stribeck_rad_s", 0.3},
       {"friction.stribeck_exponent", 0.7},
       {"friction.stribeck_asymmetry", -0.5}}},
-    {"friction under the motor's torque",
-     {{"friction.load_driving", 0.15}, {"friction.load_backdriving", 0.1}, {"friction.load_by_motor", 1.0}}},
-    {"friction under the net torque", {{"friction.load_driving", 0.15}, {"friction.load_net", 0.8}}},
     {"warm, other forms",
      {{"thermal.viscous_per_K", -0.03},
       {"thermal.resistance_per_K", 0.0039},
@@ -173,6 +119,23 @@ const std::map<std::string, Values> kCases = {
       {"drive.no_load_rad_s", 6.0},
       {"sensor.quantum_rad", 0.0005}}},
 };
+
+const std::map<std::string, Values>& cases() {
+  static const std::map<std::string, Values> kCases = [] {
+    std::map<std::string, Values> all = kCombined;
+    for (const effects::Effect& effect : effects::catalogue()) {
+      for (const effects::Form& form : effect.forms) {
+        const model::ActuatorParameters with = with_effect(effect, form).actuator;
+        for (const model::ActuatorParameter& p : model::actuator_parameters()) {
+          if (effect.name != "load" && p.value(with) != p.value({}))
+            all[effect.name + ", " + form.name][std::string(p.name)] = p.value(with);
+        }
+      }
+    }
+    return all;
+  }();
+  return kCases;
+}
 
 /// Residual torques of some cases, as motor.yaml has them: every quantity, within and beyond its axis.
 const std::map<std::string, std::string> kResidualTorques = {
@@ -274,24 +237,32 @@ ordered_json outputs(const Values& values, const std::string& residual = "") {
 }
 
 ordered_json actuators_now() {
-  ordered_json names = ordered_json::array(), cases = ordered_json::object();
-  for (const model::ActuatorParameter& parameter : model::actuator_parameters()) names.push_back(parameter.name);
-  for (const auto& [name, values] : kCases) {
+  ordered_json found = ordered_json::object();
+  for (const auto& [name, values] : cases()) {
     const auto residual = kResidualTorques.find(name);
-    cases[name] = outputs(values, residual == kResidualTorques.end() ? "" : residual->second);
+    found[name] = outputs(values, residual == kResidualTorques.end() ? "" : residual->second);
   }
-  return {{"step_s", kStep_s}, {"names", names}, {"steps", inputs()}, {"cases", cases}};
+  return {{"step_s", kStep_s}, {"steps", inputs()}, {"cases", found}};
 }
 
+/// Beside the joint that lacks it alone.
 TEST(ActuatorRecord, ShowsEveryEffectAtWork) {
-  const std::vector<double> neutral = outputs({})["torque_Nm"];
-  for (const auto& [name, values] : kCases) {
-    if (values.empty()) continue;
-    EXPECT_NE(outputs(values)["torque_Nm"].get<std::vector<double>>(), neutral) << name;
+  const auto torque = [](const model::ActuatorParameters& parameters) {
+    Values values;
+    for (const model::ActuatorParameter& p : model::actuator_parameters())
+      values[std::string(p.name)] = p.value(parameters);
+    return outputs(values)["torque_Nm"];
+  };
+  for (const effects::Effect& effect : effects::catalogue()) {
+    for (const effects::Form& form : effect.forms) {
+      if (effect.name == "load") continue;  // of the joint, not of its actuator
+      EXPECT_NE(torque(with_effect(effect, form).actuator), torque(without_effect(effect).actuator))
+          << effect.name << ", " << form.name;
+    }
   }
   for (const model::ActuatorParameter& parameter : model::actuator_parameters()) {
     bool used = false;
-    for (const auto& [name, values] : kCases) used = used || values.contains(std::string(parameter.name));
+    for (const auto& [name, values] : cases()) used = used || values.contains(std::string(parameter.name));
     EXPECT_TRUE(used) << parameter.name;
   }
 }
@@ -300,18 +271,25 @@ TEST(ActuatorRecord, ShowsEveryQuantityOfAResidualTorqueAtWork) {
   std::string all;
   for (const auto& [name, text] : kResidualTorques) {
     all += text;
-    EXPECT_NE(outputs(kCases.at(name), text)["torque_Nm"], outputs(kCases.at(name))["torque_Nm"]) << name;
+    EXPECT_NE(outputs(cases().at(name), text)["torque_Nm"], outputs(cases().at(name))["torque_Nm"]) << name;
   }
   for (const auto& [quantity, quantity_name] : model::residual_quantities())
     EXPECT_NE(all.find(std::string(quantity_name)), std::string::npos) << quantity_name;
+}
+
+TEST(ActuatorRecord, TrainingKnowsEachNumbersNeutralValue) {
+  ordered_json neutral = ordered_json::object();  // null for infinity
+  for (const model::ActuatorParameter& p : model::actuator_parameters()) neutral[std::string(p.name)] = p.value({});
+  const std::string file = project_folder() + "/training/pmg_train/actuator_parameters.json";
+  if (std::getenv("PMG_WRITE_RECORDS") != nullptr) std::ofstream(file) << neutral.dump() << '\n';
+  EXPECT_EQ(ordered_json::parse(std::ifstream(file)).dump(), neutral.dump());
 }
 
 TEST(ActuatorRecord, IsWhatTheActuatorModelsGive) {
   const ordered_json now = actuators_now();
   if (std::getenv("PMG_WRITE_RECORDS") != nullptr) std::ofstream(kActuatorRecord) << now.dump() << '\n';
   const auto record = ordered_json::parse(std::ifstream(kActuatorRecord));
-  ASSERT_EQ(record["names"], now["names"]);
-  for (const auto& [name, values] : kCases) {
+  for (const auto& [name, values] : cases()) {
     const ordered_json &then = record["cases"][name], &there = now["cases"][name];
     ASSERT_EQ(then["parameters"], there["parameters"]) << name;
     for (std::size_t k = 0; k < static_cast<std::size_t>(kSteps); ++k) {

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 import torch
 
-from pmg_train.actuator import NEUTRAL, ActuatorModel
+from pmg_train.actuator import ActuatorModel
 
 RECORD = json.loads((Path(__file__).resolve().parents[2] / "test" / "data" / "training" / "actuators.json").read_text())
 CASES = list(RECORD["cases"])
@@ -35,10 +35,6 @@ def run(model: ActuatorModel, dtype) -> tuple[torch.Tensor, torch.Tensor]:
         torque.append(t.clone())
         slope.append(k.clone())
     return torch.stack(torque), torch.stack(slope)
-
-
-def test_every_number_of_motor_yaml_has_its_neutral_value_here():
-    assert set(NEUTRAL) == set(RECORD["names"])
 
 
 def test_all_joints_at_once_equal_the_simulations():
