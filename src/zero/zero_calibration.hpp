@@ -31,7 +31,7 @@ struct ZeroOptions {
   double least_inside_m = 0.01;      ///< of the centre of pressure from the sole's edge when the sole lies flat
   // What a zero point's standard deviation may be at most.
   double well_rad = 0.002;     ///< known well
-  double roughly_rad = 0.005;  ///< known roughly: worth applying, since zero points of assembled joints are out by tens of mrad
+  double roughly_rad = 0.005;  ///< known roughly: far nearer the truth than an assembled joint's tens of mrad
 };
 
 /// How well the poses determine a joint's zero point. Zero points that are known well or roughly are applied.

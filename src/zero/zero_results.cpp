@@ -38,16 +38,15 @@ ordered_json pose_json(const StillPose& pose, const ZeroPose& judged) {
 std::string verdict_text(const ZeroResults& results) {
   const auto without = std::ranges::count(results.found.known, Known::kNo);
   return fmt::format("Zero points of {} joints from {} poses; {} of {} joints can't be told",
-                     std::ssize(results.found.known) - without, results.found.used(),
-                     unobserved_joints(results).size(), results.robot->joints.size());
+                     std::ssize(results.found.known) - without, results.found.used(), unobserved_joints(results).size(),
+                     results.robot->joints.size());
 }
 
 /// The largest standard deviation of a zero point that is known roughly [rad].
 double worst_rough_rad(const ZeroCalibration& found) {
   double worst = 0.0;
   for (std::size_t i = 0; i < found.known.size(); ++i) {
-    if (found.known[i] == Known::kRoughly)
-      worst = std::max(worst, found.deviation_rad[static_cast<Eigen::Index>(i)]);
+    if (found.known[i] == Known::kRoughly) worst = std::max(worst, found.deviation_rad[static_cast<Eigen::Index>(i)]);
   }
   return worst;
 }

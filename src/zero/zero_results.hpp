@@ -21,7 +21,8 @@ struct ZeroResults {
 };
 
 /// (actuators, results) => (actuators with sensor.zero_offset_rad = -z, reading minus true angle, at the joints whose
-/// zero points are known well or roughly). -z replaces an actuator's earlier offset: readings of poses are raw, so z corrects the whole offset.
+/// zero points are known well or roughly). -z replaces an actuator's earlier offset: readings of poses are raw, so z
+/// corrects the whole offset.
 sim::ActuatorsByJoint with_zero_offsets(sim::ActuatorsByJoint actuators, const ZeroResults& results);
 
 /// A joint whose zero point the poses do not determine, with the reason.
