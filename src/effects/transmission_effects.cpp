@@ -30,7 +30,7 @@ Values hardening_shafts(const StartsFrom& from) {
   return found;
 }
 
-Starts plays(std::vector<double> bends_rad) {
+Starts plays(const std::vector<double>& bends_rad) {
   return [bends_rad](const StartsFrom& from) {
     Values found;
     for (const double bend_rad : bends_rad) {

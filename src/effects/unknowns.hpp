@@ -42,8 +42,8 @@ struct Unknown : calib::FitParameter {
 
 /// What a bench's motion makes usual for a quantity.
 struct Usual {
-  double typical;      ///< a change that matters
-  double start = 1.0;  ///< the unit of the catalogue's start values
+  double typical = 0.0;  ///< a change that matters
+  double start = 1.0;    ///< the unit of the catalogue's start values
   double highest = -std::numeric_limits<double>::infinity(),
          lowest = std::numeric_limits<double>::infinity();  ///< a search reaches them at least
 };
