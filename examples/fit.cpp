@@ -32,7 +32,7 @@ int main(int argc, char** argv) try {
   const std::vector<calib::Confidence> confidence = calib::confidence(problem, fit.point, 1);
   for (std::size_t i = 0; i < unknowns.size(); ++i)
     std::printf("%-24s %11.5g +- %.2g %s\n", unknowns[i].name.c_str(), calib::value(fit.model, unknowns[i].name),
-                confidence[i].deviation, unknowns[i].unit.c_str());
+                confidence[i].deviation, unknowns[i].unit().c_str());
   std::printf("error %.3g mrad\n", 1e3 * std::sqrt(fit.loss_rad2));
 } catch (const std::exception& error) {
   std::fprintf(stderr, "fit: %s\n", error.what());
