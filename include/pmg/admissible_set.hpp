@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "pmg/blending.hpp"
@@ -52,12 +53,16 @@ class AdmissibleSet {
     if (has_half_gain(clip)) tabled(bend_of(clip, q_stand), JointVector::Zero(q_stand.size()), bend_[direction]);
   }
 
+  /// Some clip says how it looks at half gain. Then a joint may leave its room in the middle of the gains alone, and
+  /// velocity_scale jumps between that middle and the whole.
+  bool bends() const noexcept { return phasewise_; }
+
   bool contains_posture(const JointVector& q_s) const noexcept {
     return (q_s - room_up_).cwiseMax(-q_s - room_down_).maxCoeff() <= 0.0;
   }
 
   /// (gains, q_s) => (s): the largest s in [0, 1] for which s * gain is admissible on top of an admissible q_s. Gains
-  /// from index `size` on are 0.
+  /// from index `size` on are 0. Continuous in both, but for libraries that bend (bends()).
   double velocity_scale(const PerCorner<double>& gain, const JointVector& q_s,
                         std::size_t size = kCorners) const noexcept {
     if (phasewise_) return phasewise_velocity_scale(gain, q_s, size);
@@ -89,37 +94,47 @@ class AdmissibleSet {
   static constexpr int kPhases = 50;
 
   /// As velocity_scale. Clips that bend with their gain count at the same phase: their half-gain clips are large and
-  /// opposite, so worst phases of each would forbid most mixtures. s is bisected as a posture's.
+  /// opposite, so worst phases of each would forbid most mixtures. Along s a joint deviates by a s - c s^2, so it may
+  /// leave its room and come back: where the whole of the gains isn't admissible, s is where a joint leaves first.
   double phasewise_velocity_scale(const PerCorner<double>& gain, const JointVector& q_s,
                                   std::size_t size) const noexcept {
-    const auto contains = [&](double scale) {
-      JointVector room_up = room_up_ - q_s;
-      JointVector room_down = room_down_ + q_s;
-      for (std::size_t d = kDirections; d < size; ++d) {
-        if (gain[d] == 0.0) continue;
-        room_up -= scale * gain[d] * up_[d];
-        room_down -= scale * gain[d] * down_[d];
-      }
-      JointVector q(q_s.size());
-      for (int i = 0; i < kPhases; ++i) {
-        q.setZero();
-        for (std::size_t d = 0; d < kDirections; ++d) {
-          const double g = scale * gain[d];
-          if (g == 0.0) continue;
-          q += g * deviation_[d].col(i);
-          if (bend_[d].cols() > 0) q += bend_gain(g) * bend_[d].col(i);
-        }
-        if ((q - room_up).cwiseMax(-q - room_down).maxCoeff() > 0.0) return false;
-      }
-      return true;
-    };
-    if (contains(1.0)) return 1.0;
-    double inside = 0.0, outside = 1.0;
-    for (int i = 0; i < 30; ++i) {  // 2^-30 = 1e-9 of the gains, as for postures
-      const double middle = 0.5 * (inside + outside);
-      (contains(middle) ? inside : outside) = middle;
+    JointVector room_up = room_up_ - q_s;
+    JointVector room_down = room_down_ + q_s;
+    JointVector corners_up = JointVector::Zero(q_s.size()), corners_down = corners_up, a(q_s.size()), c(q_s.size());
+    for (std::size_t d = kDirections; d < size; ++d) {
+      if (gain[d] == 0.0) continue;
+      corners_up += gain[d] * up_[d];
+      corners_down += gain[d] * down_[d];
     }
-    return inside;
+    double first = 1.0;
+    bool contained = true;
+    for (int phase = 0; phase < kPhases; ++phase) {
+      a.setZero();
+      c.setZero();
+      for (std::size_t d = 0; d < kDirections; ++d) {
+        if (gain[d] == 0.0) continue;
+        a += gain[d] * deviation_[d].col(phase);
+        if (bend_[d].cols() == 0) continue;
+        a += 4.0 * gain[d] * bend_[d].col(phase);
+        c += 4.0 * gain[d] * gain[d] * bend_[d].col(phase);
+      }
+      for (Eigen::Index i = 0; i < q_s.size(); ++i) {
+        contained = contained && a[i] + corners_up[i] - c[i] <= room_up[i] && corners_down[i] - a[i] + c[i] <= room_down[i];
+        first = std::min(first, leaves(a[i] + corners_up[i], c[i], room_up[i]));
+        first = std::min(first, leaves(corners_down[i] - a[i], -c[i], room_down[i]));
+      }
+    }
+    return contained ? 1.0 : first;
+  }
+
+  /// The least s in [0, 1] beyond which a s - c s^2 <= room fails; 1 where it never does.
+  static double leaves(double a, double c, double room) noexcept {
+    room = std::max(room, 0.0);
+    if (a <= room && a - c <= room && c <= 0.5 * a) return 1.0;
+    const double discriminant = a * a - 4.0 * c * room;
+    if (discriminant < 0.0 || (a <= 0.0 && c >= 0.0)) return 1.0;
+    const double root = std::sqrt(discriminant);
+    return std::min(1.0, a > 0.0 ? 2.0 * room / (a + root) : (a - root) / (2.0 * c));
   }
 
   /// The largest s in [0, 1] with s * excursion <= room, where the excursion exceeds the room by `beyond`.

@@ -114,6 +114,7 @@ class Generator {
     timing_ = timings_.first();
     phase_.reset(double_support_phase(timing_));
     gain_.fill(0.0);
+    velocity_share_ = 1.0;
     q_s_.setZero(q_stand_.size());
     previous_q_s_ = q_s_;
     reference_ = Reference{};
@@ -135,7 +136,7 @@ class Generator {
     const double posture_share = posture_scale(
         admissible_, [&](double scale, JointVector& q_s) { posture_.offset(asked, scale, q_s); }, q_s_);
     Mixture mixture = mix(blend_, asked, scale_);
-    const double velocity_share = admissible_.velocity_scale(mixture.gain, q_s_, mixture.size);
+    const double velocity_share = follow(admissible_.velocity_scale(mixture.gain, q_s_, mixture.size), dt_s);
     for (std::size_t c = 0; c < mixture.size; ++c) mixture.gain[c] *= velocity_share;
     mixture.gain_sum *= velocity_share;
 
@@ -251,6 +252,15 @@ class Generator {
     return asked;
   }
 
+  /// (admissible share of the gains) => (share that is played). Where the set's share may jump, the share takes its time;
+  /// what joints lack of room meanwhile, clamp_joints takes.
+  double follow(double velocity_share, double dt_s) noexcept {
+    const double most = kShareRate_per_s * dt_s;
+    velocity_share_ = admissible_.bends() ? velocity_share_ + std::clamp(velocity_share - velocity_share_, -most, most)
+                                          : velocity_share;
+    return velocity_share_;
+  }
+
   /// (gains, posture share) => (Reference::command): the command that the clips realise, less the inverse's correction
   /// asked - wanted.
   void report_command(const Command& wanted, const Command& asked, const Mixture& mixture, double posture_share,
@@ -335,6 +345,8 @@ class Generator {
     previous_q_s_ = q_s_;
   }
 
+  static constexpr double kShareRate_per_s = 2.0;  ///< twice as fast as robot.yaml lets Z1's gains move
+
   GeneratorOptions options_;
   CommandLimits limits_;  ///< the options' limits, narrowed by realisable_limits()
   CommandInverse inverse_;
@@ -352,6 +364,7 @@ class Generator {
   StanceRamp stance_;
   GaitTiming timing_;         ///< of the last motion; held at rest
   PerCorner<double> gain_{};  ///< of the previous tick
+  double velocity_share_ = 1.0;
   JointVector q_s_, previous_q_s_;
   Reference reference_;
 };

@@ -123,10 +123,15 @@ TEST(HalfGain, HasTheDerivativeOfItsAnglesWhileTheCommandRamps) {
 }
 
 /// Both ends of the parabola fit, its middle does not.
-TEST(HalfGain, ThatLeavesTheJointsRoomIsScaledToTheMargin) {
+ClipLibrary library_with_little_room() {
   ClipLibrary library = bent_library(3.0);
   library.q_lower = library.q_stand.array() - 0.5;
   library.q_upper = library.q_stand.array() + 0.5;
+  return library;
+}
+
+TEST(HalfGain, ThatLeavesTheJointsRoomIsScaledToTheMargin) {
+  const ClipLibrary library = library_with_little_room();
   const GeneratorOptions options = make_options();
   Generator generator(library, options);
   double least = 1e9;
@@ -134,6 +139,7 @@ TEST(HalfGain, ThatLeavesTheJointsRoomIsScaledToTheMargin) {
   for (int tick = 0; tick < 20000; ++tick) {
     const double share = tick < 8000 ? 0.5 : tick < 14000 ? 0.3 : 0.9;
     const Reference& r = generator.step(make_command(0.8 * share, 0, 0), kDt_s);
+    if (tick < 500 || (tick >= 14000 && tick < 14500)) continue;  // on the way
     least = std::min({least, (library.q_upper - r.q).minCoeff(), (r.q - library.q_lower).minCoeff()});
     limited = limited || r.command_limited;
     ASSERT_FALSE(r.joint_clamped);
@@ -144,13 +150,27 @@ TEST(HalfGain, ThatLeavesTheJointsRoomIsScaledToTheMargin) {
   EXPECT_LE(least, options.limit_margin_rad + 0.02) << "scaled further than the joints need";
 }
 
+/// From one end to the other the joints cross a room that hasn't space for them: they take their time, and stay inside.
+TEST(HalfGain, NeverMakesAJointJump) {
+  const ClipLibrary library = library_with_little_room();
+  Generator generator(library, make_options());
+  JointVector before = generator.reference().q;
+  double fastest_rad_s = 0.0, highest = 0.0;
+  for (int tick = 0; tick < 20000; ++tick) {
+    const double share = (tick / 500) % 2 == 0 ? 0.95 : 0.2;
+    const Reference& r = generator.step(make_command(0.8 * share, 0, 0), kDt_s);
+    fastest_rad_s = std::max(fastest_rad_s, (r.q - before).cwiseAbs().maxCoeff() / kDt_s);
+    highest = std::max({highest, (r.q - library.q_upper).maxCoeff(), (library.q_lower - r.q).maxCoeff()});
+    before = r.q;
+  }
+  EXPECT_LE(highest, 1e-12);
+  EXPECT_LT(fastest_rad_s, 14.0) << "28 where the share jumps";
+}
+
 /// Also where the command is scaled down, which takes the longest.
 TEST(HalfGain, IsPlayedWithoutTheHeap) {
   if (allocation_count() < 0) GTEST_SKIP() << "a sanitizer owns malloc";
-  ClipLibrary library = bent_library(3.0);
-  library.q_lower = library.q_stand.array() - 0.5;
-  library.q_upper = library.q_stand.array() + 0.5;
-  Generator generator(library, make_options());
+  Generator generator(library_with_little_room(), make_options());
   generator.step(make_command(0.4, 0.1, 0), kDt_s);
   const long before = allocation_count();
   bool limited = false;
