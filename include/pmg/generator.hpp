@@ -60,7 +60,7 @@ struct GeneratorOptions {
 /// that say how they look at half gain (half_gain.hpp).
 ///
 /// The stages of a tick:
-///   (user, dt) => (wanted)              CommandLimiter: range and rate limits
+///   (user, dt) => (wanted)              CommandLimiter: range and rate limits; set_correction() is added
 ///   (wanted) => (asked)                 CommandInverse: the command to ask of the clips
 ///   (asked) => (q_s, gains)             posture, then velocities, are scaled into the AdmissibleSet
 ///   (weights, dt) => (phi, contacts)    phi advances by dt / T; contacts follow from mu and r
@@ -115,6 +115,7 @@ class Generator {
     phase_.reset(double_support_phase(timing_));
     gain_.fill(0.0);
     velocity_share_ = 1.0;
+    correction_ = {};
     q_s_.setZero(q_stand_.size());
     previous_q_s_ = q_s_;
     reference_ = Reference{};
@@ -126,12 +127,18 @@ class Generator {
   /// Another rate limit for this channel [1/s], until reset().
   void set_rate(Channel channel, double rate_per_s) noexcept { limiter_.set_rate(channel, rate_per_s); }
 
+  /// From now on until reset(), what to add to the velocities of the user's admissible command [m/s, m/s, rad/s], within
+  /// their range. reference().command has it, and reference().correction says how much; command_limited judges the user's
+  /// command alone.
+  void set_correction(const std::array<double, kVelocityChannels>& correction) noexcept { correction_ = correction; }
+
   /// One tick: (user, dt) => (reference). No heap, no exception. A channel that isn't finite keeps its last value. A dt
   /// that isn't positive changes nothing.
   const Reference& step(const Command& user, double dt_s) noexcept {
     if (!(dt_s > 0.0 && std::isfinite(dt_s))) return reference_;
-    const Command& wanted =
+    const Command& admitted =
         limiter_.step(user, reference_.contact_weight[kLeft] * reference_.contact_weight[kRight], dt_s);
+    const Command wanted = corrected(admitted);
     const Command asked = apply_inverse(wanted);
     const double posture_share = posture_scale(
         admissible_, [&](double scale, JointVector& q_s) { posture_.offset(asked, scale, q_s); }, q_s_);
@@ -141,8 +148,8 @@ class Generator {
     mixture.gain_sum *= velocity_share;
 
     report_command(wanted, asked, mixture, posture_share, dt_s);
-    // A limit counts only if the user's command exceeds it without the inverse's correction.
-    const bool too_much = mixture.normalised && mix(blend_, wanted, scale_).normalised;
+    // A limit counts only if the user's command exceeds it without any correction.
+    const bool too_much = mixture.normalised && mix(blend_, admitted, scale_).normalised;
     reference_.command_limited = limiter_.limited() || too_much || posture_share < 1.0 || velocity_share < 1.0;
     advance_gait(mixture, dt_s);
     blend(mixture, dt_s);
@@ -240,6 +247,16 @@ class Generator {
       }
     }
     return best_phase;
+  }
+
+  /// (the user's admissible command) => (wanted, Reference::correction).
+  Command corrected(Command command) noexcept {
+    for (std::size_t c = 0; c < kVelocityChannels; ++c) {
+      const double admitted = command.u[c];
+      if (correction_[c] != 0.0) command.u[c] = std::clamp(admitted + correction_[c], limits_.lower[c], limits_.upper[c]);
+      reference_.correction[c] = command.u[c] - admitted;
+    }
+    return command;
   }
 
   /// (wanted) => (asked): the inverse's result, clamped to limits_ in the channels that it changed.
@@ -350,6 +367,7 @@ class Generator {
   GeneratorOptions options_;
   CommandLimits limits_;  ///< the options' limits, narrowed by realisable_limits()
   CommandInverse inverse_;
+  std::array<double, kVelocityChannels> correction_{};
   Blend blend_ = Blend::kGain;
   JointVector q_stand_, q_lower_, q_upper_;  ///< [rad]
   PerCorner<ClipCurve> curve_;               ///< empty where there is no clip

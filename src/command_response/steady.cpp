@@ -66,7 +66,8 @@ HeldResult run_held(const SteadyTest& test, const HeldCommand& asked, const sim:
     if (now.time_s < kStandBeforeWalk_s + test.settle_s) {
       ++before;
     } else {
-      for (std::size_t c = 0; c < kChannels; ++c) admitted.u[c] += now.result.reference.command.u[c];
+      const Command taken = user_command(now.result.reference);
+      for (std::size_t c = 0; c < kChannels; ++c) admitted.u[c] += taken.u[c];
     }
     return now.result.mode != control::Mode::kFault;
   };

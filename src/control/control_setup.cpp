@@ -176,6 +176,13 @@ void for_each_option(Options& tick, Visit&& visit) {
   visit("/rehearsal/duration_s", tick.rehearsal.duration_s);
   visit("/rehearsal/largest_step_rad", tick.rehearsal.largest_step_rad);
   visit("/rehearsal/refused_ticks", tick.rehearsal.refused_ticks);
+  visit("/velocity_trim/gain_per_s", tick.velocity_trim.gain_per_s);
+  visit("/velocity_trim/lag_s", tick.velocity_trim.lag_s);
+  visit("/velocity_trim/settled_share", tick.velocity_trim.settled_share);
+  visit("/velocity_trim/forgets_per_range", tick.velocity_trim.forgets_per_range);
+  visit("/velocity_trim/most_share", tick.velocity_trim.most_share);
+  visit("/velocity_trim/most_miss_share", tick.velocity_trim.most_miss_share);
+  visit("/velocity_trim/full_above_share", tick.velocity_trim.full_above_share);
   visit("/sit_down/duration_s", tick.sit_down.duration_s);
   visit("/sit_down/settle_s", tick.sit_down.settle_s);
   visit("/sit_down/reference_s", tick.sit_down.reference_s);
@@ -285,6 +292,7 @@ void restore_options(const nlohmann::ordered_json& json, TickOptions& options) {
   };
   if (unnamed("/command/turn_s")) options.generator.turn_s = 0.0;
   if (unnamed("/rehearsal/duration_s")) options.rehearsal.duration_s = 0.0;
+  if (unnamed("/velocity_trim/gain_per_s")) options.velocity_trim.gain_per_s = 0.0;
   if (unnamed("/sit_down/duration_s")) options.sit_down.duration_s = 0.0;
   if (unnamed("/sit_down/brake_factor")) options.sit_down.brake_factor = 1.0;
 }

@@ -45,6 +45,7 @@ Tick::Tick(const model::RobotModel& robot, const ClipLibrary& library, std::uniq
       gains_(gains_in_force(robot, *policy, guard_)),
       brake_kd_(own_gains(robot).kd_Nm_s_per_rad),
       motion_(robot, library, policy->variant(), options.generator, options.gco),
+      velocity_trim_(robot, options.velocity_trim, options.dt_s),
       policy_(std::move(policy)),
       supervisor_(robot, options.supervisor),
       entry_(options.entry),
@@ -297,7 +298,7 @@ void Tick::enter_stand(const model::RobotState& state) noexcept {
 
 faults::Fault Tick::drive(const model::RobotState& state) noexcept {
   if (!reference_is_made_) {
-    if (const faults::Fault fault = make_reference(); fault.code != faults::FaultCode::kNone) return fault;
+    if (const faults::Fault fault = make_reference(state); fault.code != faults::FaultCode::kNone) return fault;
     lead_arms();
     reference_is_made_ = true;
   } else if (arms_) {
@@ -343,8 +344,10 @@ void Tick::excite_joint(model::JointCommand& command) noexcept {
   limiter_.set_gains(joint, told.kp_Nm_per_rad, told.kd_Nm_s_per_rad);
 }
 
-faults::Fault Tick::make_reference() noexcept {
+faults::Fault Tick::make_reference(const model::RobotState& state) noexcept {
   const io::Lap generator(stopwatch_);
+  const bool walks = supervisor_.mode() == Mode::kWalk && runs_policy(result_.maker);
+  motion_.set_correction(velocity_trim_.step(state, result_.user, motion_.reference(), walks));
   result_.reference = motion_.advance(result_.user, dt_s_);
   if (spoiler_ != nullptr) spoiler_->spoil(result_.reference);
   result_.times.generator_ns = generator.elapsed_ns();

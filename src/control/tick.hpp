@@ -19,6 +19,7 @@
 #include "control/sit_down.hpp"
 #include "control/supervisor.hpp"
 #include "control/target_maker.hpp"
+#include "control/velocity_trim.hpp"
 #include "faults/action_monitor.hpp"
 #include "faults/foot_load_watch.hpp"
 #include "gco/motion_composition.hpp"
@@ -63,6 +64,7 @@ struct TickOptions {
   /// because a robot that is set down must be balanced.
   EntryRampOptions change_over{.speed_rad_s = 3.0, .shortest_s = 0.2, .longest_s = 0.5};
   RehearsalOptions rehearsal;
+  VelocityTrimOptions velocity_trim;
   faults::ActionMonitorOptions action_monitor;
   SitDownOptions sit_down;
   /// In Stand one joint is excited once while the others hold; nothing walks then. Only where no policy balances.
@@ -169,7 +171,7 @@ class Tick {
   /// (state) => (command): reference, ground-aware command, policy, limits. With a fault the command is not filled.
   /// Called again in a tick whose policy failed: the reference goes on once a tick.
   faults::Fault drive(const model::RobotState& state) noexcept;
-  faults::Fault make_reference() noexcept;
+  faults::Fault make_reference(const model::RobotState& state) noexcept;
   /// (the generator's reference) => (with arms where the operator has them).
   void lead_arms() noexcept;
   /// The generator gave no finite reference: a fault; a sit-down goes on with the fallback reference.
@@ -205,6 +207,7 @@ class Tick {
   policy::DriveGains gains_;
   JointVector brake_kd_;
   gco::MotionComposition motion_;
+  VelocityTrim velocity_trim_;
   std::unique_ptr<policy::Policy> policy_;
   CommandIntake intake_;
   Supervisor supervisor_;

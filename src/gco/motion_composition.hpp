@@ -2,6 +2,7 @@
 // composition of generator and ground-aware optimisation, so they can't differ.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "gco/ground_aware_command.hpp"
@@ -29,6 +30,11 @@ class MotionComposition {
 
   /// Another rate limit for this channel [1/s], until reset().
   void set_rate(Channel channel, double rate_per_s) noexcept { generator_.set_rate(channel, rate_per_s); }
+
+  /// As Generator's, until reset(): only PMG's, whose policy knows by u' what is asked of its clips.
+  void set_correction(const std::array<double, kVelocityChannels>& correction) noexcept {
+    if (variant_ == Variant::kPmg) generator_.set_correction(correction);
+  }
 
   /// (user, dt) => (reference). PMG's generator applies the library's inverse, so u' averages to the user's command.
   /// The baselines, which don't know u', ask their clips for the user's command itself. For a policy that steps by

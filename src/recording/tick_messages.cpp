@@ -113,7 +113,7 @@ void fill(const control::TickRecord& record, int joint_count, pmg_msgs::referenc
   copy(reference.contact, message.contact);
   copy(reference.contact_weight, message.contact_weight);
   copy(record.result.user, message.user);
-  copy(reference.command, message.command);
+  copy(user_command(reference), message.command);
   copy(optimised.command, message.optimised);
   message.vz_m_s = optimised.vz_m_s;
   message.height_deficit_m = optimised.height_deficit_m;
