@@ -223,7 +223,7 @@ bool Tick::take(TargetEvent event) noexcept {
 }
 
 void Tick::hang() noexcept {
-  motion_.reset();  // nobody steps in the air: the reference stands at once, and the supervisor leaves Walk
+  reset_motion();  // nobody steps in the air: the reference stands at once, and the supervisor leaves Walk
   gco_held_ticks_ = 0;
   begin_rehearsal();
   hand_over_.finish();
@@ -275,8 +275,13 @@ faults::Fault Tick::judge_first_step() noexcept {
           .limit = rehearsal_.largest_step_rad};
 }
 
-void Tick::enter_stand(const model::RobotState& state) noexcept {
+void Tick::reset_motion() noexcept {
   motion_.reset();
+  velocity_trim_.reset();
+}
+
+void Tick::enter_stand(const model::RobotState& state) noexcept {
+  reset_motion();
   take(feet_ ? TargetEvent::kStandBeginsOnTheGround : TargetEvent::kStandBegins);
   target_ = motion_.reference().q;
   fallback_.stop();

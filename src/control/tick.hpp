@@ -172,6 +172,7 @@ class Tick {
   /// Called again in a tick whose policy failed: the reference goes on once a tick.
   faults::Fault drive(const model::RobotState& state) noexcept;
   faults::Fault make_reference(const model::RobotState& state) noexcept;
+  void reset_motion() noexcept;
   /// (the generator's reference) => (with arms where the operator has them).
   void lead_arms() noexcept;
   /// The generator gave no finite reference: a fault; a sit-down goes on with the fallback reference.

@@ -17,6 +17,11 @@ void VelocityTrim::forget() noexcept {
   trim_ = {};
 }
 
+void VelocityTrim::reset() noexcept {
+  forget();
+  correction_ = {};
+}
+
 const std::array<double, kVelocityChannels>& VelocityTrim::step(const model::RobotState& state, const Command& user,
                                                                 const Reference& reference, bool walks) noexcept {
   const Command taken = user_command(reference);
@@ -30,8 +35,10 @@ const std::array<double, kVelocityChannels>& VelocityTrim::step(const model::Rob
     forget();
   }
   const double share = std::min(1.0, commanded / options_.full_above_share);
+  const double both_carry = reference.contact_weight[kLeft] * reference.contact_weight[kRight];
+  const double rate_per_s = kMostRate_per_s * (1.0 + (kDoubleSupportRate - 1.0) * both_carry);
   for (std::size_t c = 0; c < kVelocityChannels; ++c) {
-    const double most = kMostRate_per_s * range_[c] * dt_s_;
+    const double most = rate_per_s * range_[c] * dt_s_;
     correction_[c] += std::clamp(share * trim_[c] - correction_[c], -most, most);
   }
   return correction_;

@@ -34,6 +34,9 @@ class VelocityTrim {
  public:
   VelocityTrim(const model::RobotModel& robot, const VelocityTrimOptions& options, double dt_s);
 
+  /// Nothing is added, from now: for a motion that is itself reset.
+  void reset() noexcept;
+
   /// (state, the user's command, the last tick's reference, whether a policy walks by it) => (what to add to the
   /// velocities asked of the clips [m/s, m/s, rad/s]). Goes to zero when nothing is commanded or nothing walks, and
   /// then nothing is remembered. It never jumps. No heap.
@@ -41,7 +44,8 @@ class VelocityTrim {
                                                     const Reference& reference, bool walks) noexcept;
 
  private:
-  static constexpr double kMostRate_per_s = 1.0;  ///< of a correction, in ranges
+  static constexpr double kMostRate_per_s = 1.0;     ///< of a correction, in ranges
+  static constexpr double kDoubleSupportRate = 0.15;  ///< of it where both feet carry, as the generator's: they slip less
 
   void learn(const model::RobotState& state, const Command& user, const Command& taken,
              const PerFoot<double>& weight) noexcept;
