@@ -15,6 +15,7 @@
 #include "can/candump.hpp"
 #include "can/replay.hpp"
 #include "can/socket_link.hpp"
+#include "files/bounded_file.hpp"
 #include "model/robot_model.hpp"
 #include "pmg/types.hpp"
 #include "program.hpp"
@@ -50,8 +51,9 @@ int dump_buses(const std::string& robot_name, double for_s) {
 int replay_recording(const std::string& robot_name, const std::string& recording) {
   const model::RobotModel robot = model::load_robot(model::find_robot(robot_name));
   const can::DriveSetup setup = can::load_drives(robot);
+  constexpr std::uint64_t kLargest_bytes = std::uint64_t{1} << 32;  // a day of five full buses
+  files::expect_bounded_file(recording, kLargest_bytes, "a recording of `pmg_bus dump`");
   std::ifstream file(recording);
-  if (!file) throw std::invalid_argument(recording + ": can't be read; expected a recording of `pmg_bus dump`");
   can::Replay replay(setup, robot, [](double t_s, const std::string& text) {
     std::cout << fmt::format("{:10.4f} s  {}\n", t_s, text);
   });

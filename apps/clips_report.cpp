@@ -50,6 +50,7 @@ CLI::App* add_report(CLI::App& app, ReportOptions& options) {
 }
 
 int report(const ReportOptions& options) {
+  pages::expect_page_or_none(options.out);
   ProgressLine progress;
   const Reviewed of = reviewed(options, progress);
   library_page::Measured measured;

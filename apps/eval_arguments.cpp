@@ -1,6 +1,7 @@
 #include "eval_arguments.hpp"
 
 #include "option_checks.hpp"
+#include "result_folder.hpp"
 
 namespace pmg::apps {
 namespace {
@@ -40,6 +41,7 @@ void declare_clips(CLI::App& command, EvalArguments& arguments) {
 void declare_output(CLI::App& command, EvalArguments& arguments) {
   command.add_option("--jobs", arguments.jobs, "runs at once")->check(in_range(1, 1024))->default_str("one a core");
   command.add_option("--out", arguments.out, "folder for the results; made if absent")->required();
+  add_overwrite(command, arguments.overwrite);
   command.add_flag("--json", arguments.json, "print the JSON on stdout instead of the short report");
 }
 
@@ -166,6 +168,14 @@ void declare_jumps(CLI::App& app, EvalArguments& arguments) {
 }
 
 }  // namespace
+
+void EvalArguments::make_folder() const {
+  make_result_folder(out,
+                     {"an evaluation",
+                      {"report.html", "table1.json", "table2.json", "table3.json", "push.json", "robust.json",
+                       "gait.json", "steady.json", "jumps.json"}},
+                     overwrite);
+}
 
 void EvalArguments::declare(CLI::App& app) {
   app.footer(kFooter);

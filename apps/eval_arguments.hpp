@@ -19,8 +19,10 @@ struct EvalArguments {
   int seeds = 20, trials = 200, tasks = 100, jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   std::size_t first = 0;
   double speed_m_s = 0.8, duration_s = 60.0;
-  bool gantry = false, nominal = false, video = false, json = false;
+  bool gantry = false, nominal = false, video = false, json = false, overwrite = false;
 
+  /// Makes the folder of --out. Throws files::ConfigError if it holds an evaluation and --overwrite isn't given.
+  void make_folder() const;
   /// Declares all subcommands. The caller parses app afterwards.
   void declare(CLI::App& app);
   /// Name of the parsed subcommand. Fills in the defaults that differ between subcommands.

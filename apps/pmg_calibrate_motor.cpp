@@ -19,6 +19,7 @@
 #include "json_output.hpp"
 #include "option_checks.hpp"
 #include "program.hpp"
+#include "result_folder.hpp"
 #include "shown_progress.hpp"
 #include "sim/motor_file.hpp"
 
@@ -47,13 +48,15 @@ Example:
 Exit codes: 0 fitted, 1 fitted but off its data or no better than where it started (the first line says which), 2 bad
 input or output, among it faults of the data, 130 interrupted (what was found until then is kept).)";
 
+const apps::Results kResults = {"a calibration", {"motor.yaml", "fit.json", "report.html", "fit.svg"}};
+
 struct Arguments {
   fs::path bench, out;
   std::vector<std::string> also, ranges, fixed;
   std::string fit, score, joint, method = "sbplx", data_faults = "leave-out";
   double step_s = 0.0;
   unsigned starts = 8, threads = std::max(1U, std::thread::hardware_concurrency()), seed = 1;
-  bool only = false, json = false;
+  bool only = false, json = false, overwrite = false;
   apps::ExcitationCommand excitation;
 };
 
@@ -69,6 +72,7 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.footer(kBeforeWords + lines_of(effects::fit_words()) + kAfterWords);
   app.add_option("BENCH", arguments.bench, "folder of the bench");
   app.add_option("--out", arguments.out, "folder for the results; made if absent")->required();
+  CLI::Option* overwriting = apps::add_overwrite(app, arguments.overwrite);
   app.add_option("--also", arguments.also, "effects to fit besides the gains and the rotor");
   app.add_flag("--only", arguments.only, "fit what --also names and nothing else");
   app.add_option("--fit", arguments.fit,
@@ -93,6 +97,7 @@ void declare(CLI::App& app, Arguments& arguments) {
       ->check(apps::in_range(1e-5, 0.01));
   app.add_option("--joint", arguments.joint, "its name in motor.yaml; bench.yaml's or the bench folder's if not given");
   arguments.excitation.declare(app);
+  overwriting->excludes("--make-excitation");
   app.add_flag("--json", arguments.json, "print fit.json on stdout instead of the short report");
 }
 
@@ -149,8 +154,9 @@ calib::JointModel start_model(const Arguments& arguments, const bench::Bench& be
   return model;
 }
 
-void write_results(const calib::FitResults& results, const calib::JointModel& before, const fs::path& out) {
-  fs::create_directories(out);
+void write_results(const calib::FitResults& results, const calib::JointModel& before, const fs::path& out,
+                   bool overwrite) {
+  apps::make_result_folder(out, kResults, overwrite);
   io::write_whole_file(out / "fit.svg", calib::fit_picture(results, before));
   calib::fit_report(results).write(out / "report.html");
   io::write_whole_file(out / "motor.yaml",
@@ -226,6 +232,7 @@ int calibrate(const Arguments& arguments) {
     return kOk;
   }
   if (arguments.bench.empty()) throw std::invalid_argument("BENCH is missing (--help shows an example)");
+  apps::expect_unused(arguments.out, kResults, arguments.overwrite);
   apps::ProgressLine progress;
   const bench::Bench as_recorded = bench::read_bench(arguments.bench);
   parameters(arguments, as_recorded);  // refuses a wrong name before the work, as the next line does
@@ -274,7 +281,7 @@ int calibrate(const Arguments& arguments) {
   if (!scored.empty()) {
     results.scored = calib::assess(arguments.score, scored, neutral, results.fit.model, arguments.threads);
   }
-  write_results(results, neutral, arguments.out);
+  write_results(results, neutral, arguments.out, arguments.overwrite);
   if (arguments.json)
     apps::print_json(calib::fit_json(results));
   else

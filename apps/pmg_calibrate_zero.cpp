@@ -10,6 +10,7 @@
 #include "json_output.hpp"
 #include "option_checks.hpp"
 #include "program.hpp"
+#include "result_folder.hpp"
 #include "shown_progress.hpp"
 #include "zero/zero_results.hpp"
 #include "zero/zero_stances.hpp"
@@ -34,12 +35,15 @@ Examples:
 Exit codes: 0 every joint between soles and IMU is calibrated, 1 some are known roughly or not at all, the poses
 disagree or the iteration did not converge (the first line says which), 2 bad input or output, 130 interrupted (what was found until then is kept).)";
 
+const apps::Results kResults = {"a calibration", {"zero.yaml", "zero.json", "report.html"}};
+const apps::Results kStances = {"a robot or a scenario", {"robot.yaml", "scenario.yaml"}};
+
 struct Arguments {
   std::vector<fs::path> logs;
   std::string robot = "z1";
   fs::path out, stances, motor;
   zero::ZeroOptions options;
-  bool json = false;
+  bool json = false, overwrite = false;
 };
 
 void declare(CLI::App& app, Arguments& arguments) {
@@ -47,6 +51,7 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("LOG", arguments.logs, "logs or folders of runs");
   app.add_option("--robot", arguments.robot, "robot's name below config/robots, or its folder")->capture_default_str();
   app.add_option("--out", arguments.out, "folder for the results; made if absent");
+  apps::add_overwrite(app, arguments.overwrite);
   app.add_option("--make-stances", arguments.stances,
                  "write a robot folder and scenario.yaml for taking logs, and exit");
   app.add_option("--motor", arguments.motor, "motor.yaml whose other numbers zero.yaml shall keep");
@@ -70,13 +75,15 @@ void declare(CLI::App& app, Arguments& arguments) {
 }
 
 int make_stances(const Arguments& arguments) {
+  apps::make_result_folder(arguments.stances, kStances, arguments.overwrite);
   zero::write_zero_rig(model::load_robot(model::find_robot(arguments.robot)), arguments.stances);
   std::cout << fmt::format("stances in {}\n", arguments.stances.string());
   return kOk;
 }
 
-void write_results(const zero::ZeroResults& results, const sim::ActuatorsByJoint& known, const fs::path& out) {
-  fs::create_directories(out);
+void write_results(const zero::ZeroResults& results, const sim::ActuatorsByJoint& known, const fs::path& out,
+                   bool overwrite) {
+  apps::make_result_folder(out, kResults, overwrite);
   zero::zero_report(results).write(out / "report.html");
   io::write_whole_file(out / "zero.yaml",
                        sim::motor_yaml(zero::with_zero_offsets(known, results), zero::zero_remarks(results)));
@@ -87,6 +94,7 @@ int calibrate(const Arguments& arguments) {
   if (arguments.logs.empty())
     throw std::invalid_argument("LOG is missing (pmg_calibrate_zero --help shows an example)");
   if (arguments.out.empty()) throw std::invalid_argument("--out is missing; expected a folder for the results");
+  apps::expect_unused(arguments.out, kResults, arguments.overwrite);
   const model::RobotModel robot = model::load_robot(model::find_robot(arguments.robot));
   sim::ActuatorsByJoint known;
   if (!arguments.motor.empty()) known = sim::read_motor_file(arguments.motor, robot.joint_index);
@@ -98,7 +106,7 @@ int calibrate(const Arguments& arguments) {
   results.interrupted = apps::interrupt_requested != 0;
   progress.clear();
   if (results.interrupted && results.found.steps_rad.empty()) return kInterrupted;  // before any result
-  write_results(results, known, arguments.out);
+  write_results(results, known, arguments.out, arguments.overwrite);
   if (arguments.json) {
     apps::print_json(zero::zero_json(results));
   } else {

@@ -24,6 +24,7 @@
 #include "option_checks.hpp"
 #include "program.hpp"
 #include "residual_torque/extension_report.hpp"
+#include "result_folder.hpp"
 #include "robot_diagnosis.hpp"
 #include "shown_progress.hpp"
 #include "sim/motor_file.hpp"
@@ -51,6 +52,9 @@ Exit codes: 0 a verdict (found, none, or ambiguous with what to record next), 1 
 data or no better than before (the first line says which), 2 bad input or output, 130 interrupted (what was found until
 then is kept, without a verdict).)";
 
+const apps::Results kResults = {"a diagnosis", {"diagnosis.json", "report.html", "motor.yaml"}};
+const apps::Results kRecordings = {"recordings", {"hanging.lcm", "standing.lcm"}};
+
 struct Arguments {
   fs::path bench, out, model, record;
   std::vector<fs::path> inputs;
@@ -61,7 +65,7 @@ struct Arguments {
   std::string data_faults = "leave-out";
   std::vector<std::string> set;
   fs::path set_file;
-  bool json = false;
+  bool json = false, overwrite = false;
 
   /// Sets thresholds as --set-file says, then as --set says.
   void set_thresholds(const evidence::ThresholdRows& rows) const {
@@ -74,6 +78,7 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.footer(kFooter);
   app.add_option("BENCH", arguments.inputs, "folder of the bench; with --robot logs of runs: files or folders");
   app.add_option("--out", arguments.out, "folder for the results; made if absent");
+  apps::add_overwrite(app, arguments.overwrite);
   app.add_option("--robot", arguments.robot, "diagnose a whole robot from logs: its name or folder");
   app.add_option("--record", arguments.record,
                  "with --robot: a simulated one plays what shows most, into DIR/hanging.lcm and DIR/standing.lcm");
@@ -198,26 +203,31 @@ void print_summary(const diagnosis::Diagnosis& found, const bench::Bench& bench,
 int diagnose_robot(const Arguments& arguments) {
   apps::ProgressLine progress;
   if (!arguments.record.empty()) {
+    apps::make_result_folder(arguments.record, kRecordings, arguments.overwrite);
     const bool whole =
         apps::record_robot(arguments.robot, arguments.record, arguments.seed, apps::shown(progress, "excitation"));
     return whole ? kOk : kInterrupted;
   }
   if (arguments.inputs.empty() || arguments.out.empty())
     throw std::invalid_argument("--robot expects logs and --out DIR, or --record DIR");
+  apps::expect_unused(arguments.out, kResults, arguments.overwrite);
   robot_diagnosis::RobotDiagnosisOptions options;
   arguments.set_thresholds(evidence::rows(options));
-  return apps::diagnose_robot_logs({.robot = arguments.robot,
-                                    .logs = arguments.inputs,
-                                    .out = arguments.out,
-                                    .options = options,
-                                    .json = arguments.json,
-                                    .progress = apps::shown(progress, "equations of motion")});
+  return apps::diagnose_robot_logs(
+      {.robot = arguments.robot,
+       .logs = arguments.inputs,
+       .out = arguments.out,
+       .options = options,
+       .make_folder = [&] { apps::make_result_folder(arguments.out, kResults, arguments.overwrite); },
+       .json = arguments.json,
+       .progress = apps::shown(progress, "equations of motion")});
 }
 
 int diagnose(Arguments arguments) {
   if (arguments.inputs.size() != 1 || arguments.out.empty())
     throw std::invalid_argument("expected one BENCH and --out DIR (pmg_diagnose --help shows an example)");
   arguments.bench = arguments.inputs.front();
+  apps::expect_unused(arguments.out, kResults, arguments.overwrite);
   apps::ProgressLine progress;
   const bench::Bench bench = bench::read_bench(arguments.bench);
   diagnosis::DiagnoseOptions options;
@@ -236,7 +246,7 @@ int diagnose(Arguments arguments) {
   const diagnosis::Diagnosis found = diagnosis::diagnose(bench, options, &runs, apps::shown(progress));
   progress.clear();
   const Cost cost{.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()};
-  fs::create_directories(arguments.out);
+  apps::make_result_folder(arguments.out, kResults, arguments.overwrite);
   nlohmann::ordered_json json = diagnosis::diagnosis_json(found);
   json["wall_s"] = cost.wall_s;
   json["cost"] = {{"cpu_s", cost.used.cpu_s},

@@ -104,7 +104,6 @@ int hand_over(const apps::EvalArguments& arguments, const Result& result) {
   const work::Worth worth = worth_of(result);
   nlohmann::ordered_json json = to_json(result);
   add_to(json, worth);
-  fs::create_directories(arguments.out);
   sil::write_json(arguments.out / (json["kind"].get<std::string>() + ".json"), json);
   page_of(result).write(arguments.out / "report.html");
   if (arguments.json) {
@@ -165,7 +164,7 @@ int table1(const apps::EvalArguments& arguments) {
   for (int seed = 1; seed <= table.seeds; ++seed)
     table.plants.push_back(table.cases.front().plants.of(robot, static_cast<std::uint64_t>(seed)));
   if (arguments.video) sim::expect_ffmpeg();
-  fs::create_directories(arguments.out);
+  arguments.make_folder();
   table.campaign = evaluation::run_campaign(table.cases, table.scenario, table.seeds, arguments.gantry,
                                             Watch(arguments).supervision());
   measure_yardsticks(table, Watch(arguments).supervision());
@@ -191,7 +190,7 @@ int table2(const apps::EvalArguments& arguments) {
   table.scenario_file = arguments.scenario.string();
   table.ranges = evaluation::load_plant_ranges(files::config_file("evaluation", "plants", arguments.plants.string()));
   table.scenario = scenario(arguments);
-  fs::create_directories(arguments.out);
+  arguments.make_folder();
   run_table2(table, arguments.out, Watch(arguments).supervision());
   return hand_over(arguments, table);
 }
@@ -205,7 +204,7 @@ int table3(const apps::EvalArguments& arguments) {
   const evaluation::Candidate c = candidate(arguments.policies.front(), arguments);
   table.evaluated = {.name = c.name, .candidate = c, .plants = plants(arguments)};
   if (arguments.video) sim::expect_ffmpeg();
-  fs::create_directories(arguments.out);
+  arguments.make_folder();
   run_table3(table, Watch(arguments).supervision());
   std::vector<std::string> failures;
   if (arguments.video && table.complete) {
@@ -227,7 +226,7 @@ int push(const apps::EvalArguments& arguments) {
   test.trials = arguments.trials;
   const evaluation::Candidate c = candidate(arguments.policies.front(), arguments);
   test.evaluated = {.name = c.name, .candidate = c, .plants = plants(arguments)};
-  fs::create_directories(arguments.out);
+  arguments.make_folder();
   run_pushes(test, arguments.strengths_N_s, Watch(arguments).supervision());
   return hand_over(arguments, test);
 }
@@ -240,7 +239,7 @@ int robust(const apps::EvalArguments& arguments) {
   test.scenario = scenario(arguments);
   test.seeds = arguments.seeds;
   test.cases = evaluation::robustness_cases(candidate(arguments.policies.front(), arguments), plants(arguments));
-  fs::create_directories(arguments.out);
+  arguments.make_folder();
   test.campaign =
       evaluation::run_campaign(test.cases, test.scenario, test.seeds, false, Watch(arguments).supervision());
   evaluate(test);
@@ -254,7 +253,7 @@ int gait(const apps::EvalArguments& arguments) {
   test.norms = arguments.norms.empty() ? evaluation::built_in_norms() : evaluation::load_norms(arguments.norms);
   const evaluation::Candidate c = candidate(arguments.policies.front(), arguments);
   test.evaluated = {.name = c.name, .candidate = c, .plants = {}};
-  fs::create_directories(arguments.out);
+  arguments.make_folder();
   run_gait(test, Watch(arguments).supervision());
   return hand_over(arguments, test);
 }
@@ -263,7 +262,7 @@ int steady(const apps::EvalArguments& arguments) {
   command_response::SteadyTest test;
   test.robot = arguments.robot;
   test.candidate = candidate(arguments.policies.front(), arguments);
-  fs::create_directories(arguments.out);
+  arguments.make_folder();
   run_steady(test, Watch(arguments).supervision());
   return hand_over(arguments, test);
 }
@@ -276,7 +275,7 @@ int jumps(const apps::EvalArguments& arguments) {
   test.duration_s = arguments.duration_s;
   const evaluation::Candidate c = candidate(arguments.policies.front(), arguments);
   test.evaluated = {.name = c.name, .candidate = c, .plants = plants(arguments)};
-  fs::create_directories(arguments.out);
+  arguments.make_folder();
   run_jumps(test, Watch(arguments).supervision());
   return hand_over(arguments, test);
 }

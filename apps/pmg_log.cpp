@@ -15,6 +15,7 @@
 #include "logs/replay.hpp"
 #include "option_checks.hpp"
 #include "program.hpp"
+#include "result_folder.hpp"
 #include "runtime/bench_session.hpp"
 #include "shown_progress.hpp"
 
@@ -40,7 +41,7 @@ Exit codes: 0 done (replay: every output is the same, bit for bit), 1 replay: an
 
 struct Arguments {
   std::vector<fs::path> logs;
-  bool json = false;
+  bool json = false, overwrite = false;
   fs::path csv, mcap;
   std::string robot;
   logs::ReplayOptions replay;
@@ -107,6 +108,21 @@ void print_export(const Arguments& arguments, const fs::path& into, const logs::
   if (report.unknown > 0) std::cout << fmt::format("{} messages that aren't known were left out\n", report.unknown);
 }
 
+/// An export is never written over something else: neither over a log nor among the tables of another one.
+void expect_new_targets(const Arguments& arguments, const std::vector<fs::path>& logs) {
+  for (const fs::path& log : logs) {
+    std::error_code error;  // no such file yet
+    if (!arguments.mcap.empty() && fs::equivalent(log, arguments.mcap, error))
+      throw std::invalid_argument(arguments.mcap.string() + ": is the log itself; expected a new file");
+  }
+  if (arguments.overwrite) return;
+  if (!arguments.csv.empty())
+    files::expect_unused(arguments.csv, "an export", {"STATUS.csv", "STATE.csv", "ROBOT_INFO.csv"},
+                         "a new folder, or --overwrite");
+  if (!arguments.mcap.empty() && fs::is_regular_file(arguments.mcap))
+    throw std::invalid_argument(arguments.mcap.string() + ": is there already; expected a new file, or --overwrite");
+}
+
 int export_log(const Arguments& arguments) {
   if (arguments.csv.empty() && arguments.mcap.empty())
     throw std::invalid_argument("export needs --csv or --mcap (pmg_log export --help shows an example)");
@@ -114,6 +130,7 @@ int export_log(const Arguments& arguments) {
   apps::ProgressLine line;
   const work::Progress progress = apps::shown(line);
   const std::vector<fs::path> files = io::log_files(arguments.logs);
+  expect_new_targets(arguments, files);
   const auto tell = [&](const fs::path& target, const logs::ExportReport& exported) {
     line.clear();
     print_export(arguments, target, exported);
@@ -178,6 +195,7 @@ int main(int argc, char** argv) {
   export_command->add_option(
       "--robot", arguments.robot,
       "robot's name or folder, for its frames and URDF in the MCAP; as the log says if not given");
+  export_command->add_flag("--overwrite", arguments.overwrite, "replace an export that is there");
   export_command->add_flag("--json", arguments.json, "say as JSON what was written");
   CLI::App* replay_command =
       command(app, arguments, "replay", "compute every tick again and compare all outputs, bit for bit");

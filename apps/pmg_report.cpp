@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "json_output.hpp"
+#include "pages/page.hpp"
 #include "program.hpp"
 #include "report/run_figures.hpp"
 #include "report/run_report.hpp"
@@ -69,6 +70,7 @@ int write_report(const Arguments& arguments) {
   if (fs::is_directory(arguments.out))
     throw std::invalid_argument(fmt::format("--out {}: is a folder; expected a file for the page, as {}",
                                             arguments.out.string(), (arguments.out / "report.html").string()));
+  pages::expect_page_or_none(arguments.out);
   const std::vector<report::RunSeries> runs = read(arguments.logs);
   report::run_report(runs).write(arguments.out);
   tell(arguments, runs);

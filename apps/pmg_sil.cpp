@@ -11,6 +11,7 @@
 #include "files/config_folders.hpp"
 #include "json_output.hpp"
 #include "program.hpp"
+#include "result_folder.hpp"
 #include "runtime/bench_session.hpp"
 #include "sil/failing_parts.hpp"
 #include "sil/failure_report.hpp"
@@ -30,6 +31,8 @@ using namespace pmg;
 enum ExitCode { kOk = 0, kFellOrFault = 1, kBadInput = 2, kInterrupted = 130 };
 
 using Arguments = apps::SilArguments;
+
+const apps::Results kResults = {"a run", {"log.lcm", "timing.csv", "summary.json", "video.mp4"}};
 
 /// Checks for required options. CLI11 cannot: --export-mjcf and --print-config need fewer options.
 void require(const fs::path& value, const char* option) {
@@ -76,6 +79,7 @@ int simulate(Arguments arguments) {
     return kOk;
   }
   require(arguments.out, "--out");
+  apps::expect_unused(arguments.out, kResults, arguments.overwrite);
   sim::WorldOptions world_options = sil::world_with_noise(arguments.seed, arguments.gantry || arguments.by_operators());
   world_options.benched_joint = arguments.bench;
   if (!arguments.vary.empty()) {
@@ -88,7 +92,7 @@ int simulate(Arguments arguments) {
   std::optional<sil::LiveView> view;
   if (arguments.viewer) view.emplace(world, loaded.robot);
   if (arguments.video) sim::expect_ffmpeg();
-  fs::create_directories(arguments.out);
+  apps::make_result_folder(arguments.out, kResults, arguments.overwrite);
   io::LogWriter log_file(arguments.out / "log.lcm");
   if (is_baseline(loaded.variant)) {
     std::cerr << fmt::format("baseline {}: this policy is there for comparison\n", to_string(loaded.variant));

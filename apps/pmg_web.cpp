@@ -24,6 +24,7 @@
 #include "live_page/page_state.hpp"
 #include "live_page/robot_shape.hpp"
 #include "operator/driving_station.hpp"
+#include "option_checks.hpp"
 #include "program.hpp"
 #include "seal/private_file.hpp"
 #include "web/foxglove_server.hpp"
@@ -258,11 +259,14 @@ int main(int argc, char** argv) {
   app.add_option("--robot", arguments.robot, "controller's name; may be left out when one is heard");
   app.add_option("--listen", arguments.listen,
                  "IP address of the interface that is served; 0.0.0.0: all; this computer alone if not given");
-  app.add_option("--port", arguments.port, "TCP port; 0: any free one")->capture_default_str();
+  app.add_option("--port", arguments.port, "TCP port; 0: any free one")
+      ->check(apps::in_range(0, 65535))
+      ->capture_default_str();
   app.add_option("--host", arguments.hosts, "another name by which browsers call this computer; may be repeated");
   app.add_option("--foxglove", arguments.foxglove_port,
                  "also serve the robot's topics to Foxglove on this TCP port of this computer alone; 0: any free one; "
-                 "Foxglove looks for 8765");
+                 "Foxglove looks for 8765")
+      ->check(apps::in_range(0, 65535));
   app.add_option("--foxglove-origin", arguments.foxglove_origins,
                  "another site whose pages may look at these topics: https://HOST; may be repeated");
   app.add_flag(

@@ -62,6 +62,10 @@ int parse_and_run(CLI::App& app, int argc, char** argv, const std::function<int(
     std::cerr << usage_error(app, error) << '\n';
     return kBadInput;
   }
+  if (const std::string misread = misread_value(app); !misread.empty()) {
+    std::cerr << misread << '\n';
+    return kBadInput;
+  }
   return body();
 }
 

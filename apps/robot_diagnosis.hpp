@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -22,6 +23,7 @@ struct RobotDiagnosisArguments {
   std::vector<std::filesystem::path> logs;  ///< files, or folders of runs
   std::filesystem::path out;
   robot_diagnosis::RobotDiagnosisOptions options{};
+  std::function<void()> make_folder;  ///< makes out when there is a result
   bool json = false;
   work::Progress progress{};
 };
@@ -32,7 +34,6 @@ inline bool record_robot(const std::string& name, const std::filesystem::path& o
                          const work::Progress& progress = {}) {
   const model::RobotModel robot = model::load_robot(model::find_robot(name));
   const ClipLibrary clips = model::load_clip_library(robot.directory / "clips", robot);
-  std::filesystem::create_directories(out);
   std::string kept = "nothing was written";
   try {
     sim::World gantry(robot, sil::world_with_noise(seed, true));
@@ -67,7 +68,7 @@ inline int diagnose_robot_logs(const RobotDiagnosisArguments& arguments) {
   }
   nlohmann::ordered_json json = robot_diagnosis::robot_diagnosis_json(found);
   add_to(json, worth_of(found));
-  std::filesystem::create_directories(arguments.out);
+  arguments.make_folder();
   io::write_whole_file(arguments.out / "diagnosis.json", json.dump(2) + "\n");
   robot_diagnosis::robot_diagnosis_page(robot.name, found).write(arguments.out / "report.html");
   if (arguments.json) {

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "option_checks.hpp"
+#include "result_folder.hpp"
 #include "sil/simulated_robot.hpp"
 
 namespace pmg::apps {
@@ -34,6 +35,7 @@ void SilArguments::declare(CLI::App& app) {
   app.add_option("--scenario", scenario,
                  "scenario to play: a name in config/scenarios, or a file (YAML); with --realtime it may be left out");
   app.add_option("--out", out, "folder for the results; made if absent");
+  CLI::Option* overwriting = add_overwrite(app, overwrite);
   app.add_option("--policy", control.policy,
                  "policy's name below the robot's policies/, or none: drives follow the reference; robot.yaml's if not "
                  "given, and none with --bench");
@@ -63,6 +65,7 @@ void SilArguments::declare(CLI::App& app) {
   CLI::Option* joint =
       app.add_option("--bench", bench, "excite this joint of the hanging robot and write a bench of it")
           ->excludes(threads)
+          ->excludes(overwriting)
           ->excludes("--scenario");
   app.add_option("--excitation", excitation, "what to excite it by: a folder of pmg_calibrate_motor --make-excitation")
       ->needs(joint);

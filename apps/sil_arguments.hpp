@@ -17,7 +17,8 @@ struct SilArguments {
   std::filesystem::path scenario, out, export_mjcf, motor, vary, excitation, inject;
   std::string bench, lcm_url;
   std::uint64_t seed = 0;
-  bool gantry = false, realtime = false, video = false, viewer = false, json = false, print_config = false;
+  bool gantry = false, realtime = false, video = false, viewer = false, json = false, print_config = false,
+       overwrite = false;
 
   void declare(CLI::App& app);
   bool by_operators() const { return realtime && scenario.empty(); }

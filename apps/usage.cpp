@@ -145,7 +145,27 @@ std::string wrong_count(const std::string& text) {
 
 }  // namespace
 
+std::string misread_value(const CLI::App& app) {
+  const std::vector<const CLI::App*> chain = given_commands(app);
+  for (const CLI::App* given : chain) {
+    for (const CLI::Option* option : given->get_options()) {
+      if (option->get_expected_max() == 0) continue;  // a flag
+      for (const std::string& value : option->results()) {
+        const std::string name = value.substr(0, value.find('='));
+        const bool of_chain = std::ranges::any_of(chain, [&](const CLI::App* one) { return has_option(*one, name); });
+        if (of_chain || (value.starts_with("--") && value.size() > 2))
+          return fmt::format("{}: {}: its value is missing; {} follows it", name_of(chain), option->get_name(), value);
+        if (option->get_type_name().starts_with("UINT") && value.starts_with('-'))
+          return fmt::format("{}: {}: '{}' isn't a whole number of at least 0", name_of(chain), option->get_name(),
+                             value);
+      }
+    }
+  }
+  return "";
+}
+
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
+  if (const std::string misread = misread_value(app); !misread.empty()) return misread;
   const std::vector<const CLI::App*> chain = given_commands(app);
   std::string text = unknown_word(app, chain);
   const std::string kind = error.get_name(), what = error.what();

@@ -10,6 +10,7 @@
 #include "bench/csv_table.hpp"
 #include "bench/excitation.hpp"
 #include "files/number_table.hpp"
+#include "files/result_folder.hpp"
 #include "io/whole_file.hpp"
 #include "model/bundle.hpp"
 
@@ -51,9 +52,7 @@ double finite_number(const CsvTable& table, std::size_t row, const std::string& 
 }  // namespace
 
 void write_excitation(const fs::path& folder, const Excitation& excitation, const std::string& design) {
-  if (fs::exists(folder / "runs.csv") || fs::exists(folder / "bench.yaml")) {
-    throw std::runtime_error(folder.string() + " holds an excitation or a bench already; expected a new folder");
-  }
+  files::expect_unused(folder, "an excitation or a bench", {"runs.csv", "bench.yaml"});
   fs::create_directories(folder / "commands");
   for (const ExcitationTrajectory& trajectory : excitation.trajectories) {
     std::vector<std::vector<double>> rows;

@@ -56,6 +56,11 @@ std::optional<fs::path> policy_file(const std::string& name, const char* named_b
   fs::path file = place_of_policy(name, robot);
   if (!fs::exists(file)) {
     const fs::path told(name);
+    if (fs::exists(told) && told.extension() != ".onnx")
+      throw std::invalid_argument(fmt::format(
+          "{} {}: is no policy by its ending; expected an ONNX file (.onnx) or its descriptor (.yaml), the name of a "
+          "policy of {}, or none",
+          named_by, name, robot.name));
     const bool of_robot = told.extension() == ".onnx" && !told.has_parent_path();  // pmg.onnx for pmg
     const std::string meant = files::nearest_name(of_robot ? told.stem().string() : name, policy_names(robot));
     throw std::invalid_argument(

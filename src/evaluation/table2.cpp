@@ -1,6 +1,7 @@
 #include "evaluation/table2.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <mujoco/mujoco.h>
 
 #include <algorithm>
@@ -156,6 +157,20 @@ void summarise(Table2& table, const Walks& walks) {
   }
 }
 
+/// "8 of 10 robots: ...", for a configuration in which some fell.
+std::string falls_text(const ConfigurationResult& one) {
+  const std::size_t on_the_way =
+      one.fell_on_the_way() ? static_cast<std::size_t>(one.robot_falls) - one.robots_without_errors : 0;
+  std::vector<std::string> parts;
+  if (one.robots_without_errors > 0)
+    parts.push_back(fmt::format("{} fell before they had walked", one.robots_without_errors));
+  if (on_the_way > 0) parts.push_back(fmt::format("{} fell on the way", on_the_way));
+  if (one.simulation_falls > 0)
+    parts.push_back(fmt::format("{} simulated walks ended in a fall", one.simulation_falls));
+  return fmt::format("{} of {} robots: {}{}", one.imitation_of_plant_rad.size(), one.robots(), fmt::join(parts, ", "),
+                     on_the_way > 0 || one.simulation_falls > 0 ? " (errors are of the steps before the fall)" : "");
+}
+
 }  // namespace
 
 Gains informed_gains(const model::RobotModel& robot, const Gains& otherwise) {
@@ -230,6 +245,18 @@ double Table2::ratio() const {
   return results[kFullCalibration].sim_to_real_rad.mean / results[kBaseline].sim_to_real_rad.mean;
 }
 
+ZeroPoints zero_points(const std::vector<CalibratedPlant>& plants) {
+  ZeroPoints all;
+  for (const CalibratedPlant& plant : plants) {
+    const auto well = static_cast<std::size_t>(std::ranges::count_if(plant.offsets, &FoundOffset::well));
+    all.well += well;
+    all.roughly += plant.offsets.size() - well;
+    all.untold += plant.truth.size() - std::min(plant.truth.size(), plant.offsets.size());
+    all.worst_left_rad = std::max(all.worst_left_rad, plant.worst_offset_rad);
+  }
+  return all;
+}
+
 work::Worth worth_of(const Table2& table) {
   if (!table.complete) return {work::Grade::kInterrupted, "nothing can be compared"};
   work::Worth worth;
@@ -251,11 +278,11 @@ work::Worth worth_of(const Table2& table) {
                 configuration + " was not measured: no robot and its simulation walked one step both");
       continue;
     }
-    worth.add_if(one.robots_without_errors > 0, work::Grade::kPartial,
-                 fmt::format("{} was measured on {} of {} robots: the others fell before they had walked",
-                             configuration, one.imitation_of_plant_rad.size(), one.robots()));
-    worth.add_if(one.fell_on_the_way() || one.simulation_falls > 0, work::Grade::kPartial,
-                 "in " + configuration + " some fell on the way: their errors are of the steps before");
+    const bool in_ratio = c == kBaseline || c == kFullCalibration;
+    worth.add_if(one.robots_without_errors > 0 || one.fell_on_the_way() || one.simulation_falls > 0,
+                 work::Grade::kPartial,
+                 configuration + " was measured on " + falls_text(one) +
+                     (in_ratio ? "" : "; the ratio below doesn't depend on it"));
   }
   return worth;
 }

@@ -77,6 +77,14 @@ struct CalibratedPlant {
   double worst_offset_rad = 0.0;  ///< after correction
 };
 
+/// Zero points of all plants, by how well their calibration knows them.
+struct ZeroPoints {
+  std::size_t well = 0, roughly = 0;  ///< applied
+  std::size_t untold = 0;             ///< left as they are
+  double worst_left_rad = 0.0;        ///< over all, after correction
+};
+ZeroPoints zero_points(const std::vector<CalibratedPlant>& plants);
+
 struct Table2 {
   std::string robot, policy, plants_file, scenario_file;
   sil::Scenario scenario;

@@ -34,6 +34,30 @@ std::string ratio_text(const Table2& table) {
   return std::isfinite(table.ratio()) ? fmt::format("{:.2f}", table.ratio()) : "not measured";
 }
 
+/// What is measured, in numbers; what of it isn't as asked stands in the page's first line.
+std::string what_calibration_leaves(const Table2& table) {
+  const ConfigurationResult &before = table.results[kBaseline], &after = table.results[kFullCalibration];
+  if (!std::isfinite(table.ratio()))
+    return "How much error calibration leaves isn't known: robots fell before there was a step to compare.";
+  const std::size_t robots = std::min(before.imitation_of_plant_rad.size(), after.imitation_of_plant_rad.size());
+  return fmt::format(
+      "A simulation's joints are {:.1f} mrad off its robot's before calibration, {:.1f} mrad after motors and zero "
+      "points are calibrated: {:.2f} of it (asked: {:.2f} at most), on {} of {} robots.",
+      1e3 * before.sim_to_real_rad.mean, 1e3 * after.sim_to_real_rad.mean, table.ratio(), kAskedRatio, robots,
+      std::max(before.robots(), after.robots()));
+}
+
+std::string applied_zero_points(const Table2& table) {
+  const ZeroPoints zeros = zero_points(table.plants);
+  const std::size_t applied = zeros.well + zeros.roughly;
+  std::string text =
+      fmt::format("Of {} zero points {} were applied: {} known well, {} roughly ({:.0f} %).", applied + zeros.untold,
+                  applied, zeros.well, zeros.roughly,
+                  applied == 0 ? 0.0 : 100.0 * static_cast<double>(zeros.roughly) / static_cast<double>(applied));
+  if (zeros.untold > 0) text += fmt::format(" {} couldn't be told and stay as they are.", zeros.untold);
+  return text + fmt::format(" The worst is {:.0f} mrad off afterwards.", 1e3 * zeros.worst_left_rad);
+}
+
 pages::Bars bars(const Table2& table, std::size_t metric, const std::string& title) {
   pages::Bars picture{.title = title, .unit = "rad", .names = {}, .sets = {{.name = "measured", .values = {}}}};
   for (std::size_t c = 0; c < kConfigurations; ++c) {
@@ -77,12 +101,15 @@ ordered_json to_json(const Table2& table) {
     }
   }
   for (const CalibratedPlant& plant : table.plants) {
+    const ZeroPoints zeros = zero_points({plant});
     ordered_json offsets = ordered_json::object();
     for (const FoundOffset& found : plant.offsets) offsets[found.joint] = found.zero_offset_rad;
-    json["plants"].push_back({{"truth", sim::motor_yaml(plant.truth)},
-                              {"calibrated_motors", sim::motor_yaml(plant.motors)},
-                              {"calibrated_zero_offsets_rad", offsets},
-                              {"worst_offset_left_rad", plant.worst_offset_rad}});
+    json["plants"].push_back(
+        {{"truth", sim::motor_yaml(plant.truth)},
+         {"calibrated_motors", sim::motor_yaml(plant.motors)},
+         {"calibrated_zero_offsets_rad", offsets},
+         {"zero_points", {{"well", zeros.well}, {"roughly", zeros.roughly}, {"untold", zeros.untold}}},
+         {"worst_offset_left_rad", plant.worst_offset_rad}});
   }
   return json;
 }
@@ -109,10 +136,8 @@ pages::Page page_of(const Table2& table) {
   pages::Page page(fmt::format("{}: sim-to-real, Table II", table.robot));
   page.worth(worth_of(table));
   if (!table.complete) return page;
-  if (worth_of(table).usable())
-    page.verdict({}, fmt::format("full calibration leaves {:.2f} of the baseline's sim-to-real error (asked: {:.2f}) "
-                                 "and is the best in both errors",
-                                 table.ratio(), kAskedRatio));
+  page.verdict({}, what_calibration_leaves(table));
+  page.verdict({}, applied_zero_points(table));
   page.paragraph(kOnePolicy);
   page.heading("Errors");
   page.paragraph("Means over robots, with their 95 % intervals.");
@@ -145,9 +170,12 @@ pages::Page page_of(const Table2& table) {
          .height_px = 170});
   }
   page.heading("Calibration");
-  pages::Table plants{.header = {"robot", "zero points found", "worst offset left [mrad]"}, .rows = {}};
+  pages::Table plants{.header = {"robot", "zero points known well", "roughly", "not told", "worst offset left [mrad]"},
+                      .rows = {}};
   for (std::size_t k = 0; k < table.plants.size(); ++k) {
-    plants.rows.push_back({std::to_string(k + 1), std::to_string(table.plants[k].offsets.size()),
+    const ZeroPoints zeros = zero_points({table.plants[k]});
+    plants.rows.push_back({std::to_string(k + 1), std::to_string(zeros.well), std::to_string(zeros.roughly),
+                           std::to_string(zeros.untold),
                            fmt::format("{:.2f}", 1e3 * table.plants[k].worst_offset_rad)});
   }
   page.table(plants);

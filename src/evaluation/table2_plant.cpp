@@ -188,7 +188,8 @@ std::vector<FoundOffset> calibrated_offsets(const sim::ActuatorsByJoint& plant, 
   std::vector<FoundOffset> offsets;
   for (std::size_t i = 0; i < found.joints.size(); ++i) {
     if (found.known[i] != zero::Known::kNo)
-      offsets.push_back({robot.joint_index.name(found.joints[i]), -found.z_rad[static_cast<Eigen::Index>(i)]});
+      offsets.push_back({robot.joint_index.name(found.joints[i]), -found.z_rad[static_cast<Eigen::Index>(i)],
+                         found.known[i] == zero::Known::kWell});
   }
   return offsets;
 }

@@ -52,6 +52,7 @@ sim::ActuatorsByJoint calibrated_motors(const sim::ActuatorsByJoint& plant, cons
 struct FoundOffset {
   std::string joint;
   double zero_offset_rad = 0.0;
+  bool well = false;  ///< known well; otherwise roughly (zero::Known)
 };
 std::vector<FoundOffset> calibrated_offsets(const sim::ActuatorsByJoint& plant, const model::RobotModel& robot,
                                             const std::filesystem::path& folder, std::uint64_t seed,

@@ -68,6 +68,13 @@ void expect_bounded_file(const std::filesystem::path& file, std::uint64_t larges
 
 std::string read_bounded_text(const std::filesystem::path& file, std::uint64_t largest_bytes,
                               const std::string& expected) {
+  std::string text = read_bounded_bytes(file, largest_bytes, expected);
+  if (text.find('\0') != std::string::npos) raise({file.string()}, "", "isn't a text", expected);
+  return text;
+}
+
+std::string read_bounded_bytes(const std::filesystem::path& file, std::uint64_t largest_bytes,
+                               const std::string& expected) {
   const Descriptor descriptor(file);
   std::string text(checked(descriptor.get(), file, largest_bytes, expected), '\0');
   std::size_t got = 0;

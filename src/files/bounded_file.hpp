@@ -15,7 +15,11 @@ inline constexpr std::uint64_t kLargestYaml_bytes = 1 << 20, kLargestUrdf_bytes 
 /// as "a YAML file". Opening never waits for a pipe's other end.
 void expect_bounded_file(const std::filesystem::path& file, std::uint64_t largest_bytes, const std::string& expected);
 
-/// The whole text. Throws as expect_bounded_file does.
+/// The whole file. Throws as expect_bounded_file does.
+std::string read_bounded_bytes(const std::filesystem::path& file, std::uint64_t largest_bytes,
+                               const std::string& expected);
+
+/// The same of a text: throws for a file that is none (a picture, a program), too.
 std::string read_bounded_text(const std::filesystem::path& file, std::uint64_t largest_bytes,
                               const std::string& expected);
 

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <sstream>
 #include <string_view>
 
 #include "files/bounded_file.hpp"
@@ -72,12 +73,21 @@ ConfigReader ConfigReader::from_file(const std::filesystem::path& file) {
   const std::string text = read_bounded_text(file, kLargestYaml_bytes, "a YAML file");
   try {
     const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.empty()) raise({file.string()}, "", "is empty", "a YAML file");
     if (documents.size() != 1) {
       raise({file.string()}, "", fmt::format("holds {} YAML documents", documents.size()), "one");
     }
     return ConfigReader(documents.front(), file.string(), "");
   } catch (const YAML::Exception& error) {
-    raise(place_at(file.string(), error.mark), "", error.msg, "YAML");
+    std::istringstream lines(text);
+    std::string line;
+    for (int number = 0; number <= error.mark.line && std::getline(lines, line); ++number) {
+    }
+    if (line.find('\t') < line.find_first_not_of(" \t"))
+      raise(place_at(file.string(), error.mark), "", "a tab indents this line", "blanks");
+    std::string wrong = error.msg;  // as in "unknown escape character: "
+    while (wrong.ends_with(' ') || wrong.ends_with(':')) wrong.pop_back();
+    raise(place_at(file.string(), error.mark), "", wrong, "YAML");
   }
 }
 

@@ -35,6 +35,12 @@ struct Row {
   const std::vector<Field>& fields;
 };
 
+/// Before anything is written.
+void expect_an_event(const std::vector<fs::path>& files) {
+  if (!io::LogSeries(files).next())
+    throw std::runtime_error(files.front().string() + ": no LCM event in it; expected a log");
+}
+
 /// Reads every message of these files and calls write with it.
 template <typename Write>
 ExportReport for_each_message(const std::vector<fs::path>& files, const work::Progress& progress, Write&& write) {
@@ -59,7 +65,6 @@ ExportReport for_each_message(const std::vector<fs::path>& files, const work::Pr
     ++report.messages[event.channel()];
     write(Row{event, time_s, info, *first_ns, fields});
   }
-  if (count == 0) throw std::runtime_error(files.front().string() + ": no LCM event in it; expected a log");
   return report;
 }
 
@@ -157,6 +162,7 @@ class McapExport {
 }  // namespace
 
 ExportReport export_csv(const std::vector<fs::path>& files, const fs::path& folder, const work::Progress& progress) {
+  expect_an_event(files);
   fs::create_directories(folder);
   std::map<std::string, CsvFile> tables;
   ExportReport report = for_each_message(files, progress, [&](const Row& row) {
@@ -171,6 +177,7 @@ ExportReport export_csv(const std::vector<fs::path>& files, const fs::path& fold
 
 ExportReport export_mcap(const std::vector<fs::path>& files, const fs::path& file, const std::string& robot,
                          const work::Progress& progress) {
+  expect_an_event(files);
   McapExport mcap(file, robot);
   ExportReport report;
   const ExportReport counts = for_each_message(files, progress, [&](const Row& row) { mcap.write(row, report); });

@@ -12,6 +12,7 @@
 #include <type_traits>
 
 #include "control/control_setup.hpp"
+#include "files/config_error.hpp"
 #include "io/log_series.hpp"
 #include "logs/replay_setup.hpp"
 #include "pmg_msgs/robot_info_t.hpp"
@@ -81,7 +82,7 @@ class Replay {
   }
 
   ReplayReport end() {
-    if (report_.ticks == 0) throw std::runtime_error("no tick to replay in this log");
+    if (report_.ticks == 0) throw std::runtime_error("no tick to replay in it; expected a log of a run");
     return std::move(report_);
   }
 
@@ -292,6 +293,18 @@ class Replay {
   ReplayReport report_;
 };
 
+/// Says of which log an error speaks. Errors of configuration name their own file.
+template <typename Action>
+auto of_file(const fs::path& file, Action&& action) {
+  try {
+    return action();
+  } catch (const files::ConfigError&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(fmt::format("{}: {}", file.string(), error.what()));
+  }
+}
+
 }  // namespace
 
 double ReplayReport::largest_difference() const {
@@ -303,8 +316,8 @@ double ReplayReport::largest_difference() const {
 ReplayReport replay(const std::vector<fs::path>& files, const ReplayOptions& options, const work::Progress& progress) {
   io::LogSeries events(files);
   auto run = std::make_unique<Replay>(options, progress);  // records are large
-  while (events.next()) run->take(events.event());
-  ReplayReport report = run->end();
+  while (events.next()) of_file(events.file(), [&] { run->take(events.event()); });
+  ReplayReport report = of_file(events.file(), [&] { return run->end(); });
   report.cut_short = events.cut_short();
   return report;
 }

@@ -39,7 +39,7 @@ fs::path asf_beside(const fs::path& amc) {
 }
 
 std::string content(const fs::path& file) {
-  return files::read_bounded_text(file, kLargestMotion_bytes, "a motion file");
+  return files::read_bounded_bytes(file, kLargestMotion_bytes, "a motion file");
 }
 
 }  // namespace

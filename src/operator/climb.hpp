@@ -16,6 +16,10 @@ class Climb {
   /// A hoist sends its state ten times a second. After this time without one there is no hoist.
   static constexpr std::int64_t kLook_ns = 250'000'000;
 
+  /// Only a simulated robot has a hoist, and a simulation waits for its computer: on one that was five times too slow,
+  /// 8.8 of 11.2 s passed so. While the hoist works and says so, it gets this much of a part's time.
+  static constexpr double kSlowSimulation = 6.0;
+
   /// Keeps a reference. to: kStand or kWalk; for kWalk the caller sends commands meanwhile. timeout_s: for each part.
   Climb(OperatorSource& source, std::string robot, Goal to, double timeout_s);
 

@@ -322,7 +322,8 @@ std::string RobotDriver::trouble() const {
 
 bool RobotDriver::silent() const {
   const HeardRobot* heard = source_.heard(robot_);
-  return heard == nullptr || now_ns() - heard->status_heard_ns > kSilent_ns;
+  const bool simulated = news_ != nullptr && news_->info && news_->info->backend == "sil";
+  return heard == nullptr || now_ns() - heard->status_heard_ns > (simulated ? kSimulationSilent_ns : kSilent_ns);
 }
 
 std::string RobotDriver::silence_words() const {

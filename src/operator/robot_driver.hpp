@@ -36,7 +36,9 @@ class RobotDriver {
   static constexpr std::int64_t kCalm_ns = 600'000'000;
   static constexpr std::int64_t kSettle_ns =
       300'000'000;  ///< after this time the controller must show this source as driving
-  static constexpr std::int64_t kSilent_ns = 500'000'000;   ///< a controller that has been silent for this time is gone
+  static constexpr std::int64_t kSilent_ns = 500'000'000;  ///< a controller that has been silent for this time is gone
+  static constexpr std::int64_t kSimulationSilent_ns =
+      2'000'000'000;                                        ///< the same of a simulated one, whose computer may be busy
   static constexpr std::int64_t kLetGo_ns = 2'000'000'000;  ///< how long let_go() waits for Stand
 
   /// Keeps references. robot: its controller's name.

@@ -26,6 +26,7 @@ using nlohmann::ordered_json;
 constexpr std::size_t kChartColumns =
     1500;  // points of a line: more than a laptop's chart has pixels, so that zooming shows more
 constexpr double kResolution = 5000.0;  // steps over a line's range: finer than a pixel
+constexpr std::string_view kDoctype = "<!doctype html>";
 
 std::string dump(const ordered_json& json) { return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace); }
 
@@ -234,7 +235,8 @@ std::string Page::html() const {
   }
   const std::string title = escape_markup(title_);
   std::string text =
-      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+      std::string(kDoctype) +
+      "\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width\">\n"
       // The page loads nothing, whatever its text holds.
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; "
@@ -252,7 +254,15 @@ std::string Page::html() const {
   return text;
 }
 
+void expect_page_or_none(const std::filesystem::path& file) {
+  if (!std::filesystem::is_regular_file(file) || std::filesystem::file_size(file) == 0) return;
+  std::string begin(kDoctype.size(), '\0');
+  std::ifstream(file, std::ios::binary).read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  if (begin != kDoctype) throw std::invalid_argument(file.string() + ": is there and is no page; expected a new file");
+}
+
 void Page::write(const std::filesystem::path& file) const {
+  expect_page_or_none(file);
   std::ofstream out(file, std::ios::binary);
   out << html();
   if (out.flush()) return;

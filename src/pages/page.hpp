@@ -14,6 +14,10 @@
 
 namespace pmg::pages {
 
+/// A page may be drawn anew over an older one, over nothing else. Throws std::invalid_argument if this file is there
+/// and is none.
+void expect_page_or_none(const std::filesystem::path& file);
+
 /// Each call appends to the page. The page escapes all text.
 class Page {
  public:
@@ -43,7 +47,8 @@ class Page {
   void folded(const std::string& summary, const std::function<void()>& fill);  ///< shown after a click
 
   std::string html() const;
-  void write(const std::filesystem::path& file) const;  ///< throws std::runtime_error
+  /// Throws std::runtime_error, and what expect_page_or_none() does.
+  void write(const std::filesystem::path& file) const;
 
  private:
   void picture(const std::string& title, const std::string& content);

@@ -10,6 +10,7 @@
 #include <functional>
 #include <limits>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -78,7 +79,14 @@ struct OnnxNetwork::Session {
 
 OnnxNetwork::OnnxNetwork(const std::filesystem::path& file) {
   files::expect_bounded_file(file, files::kLargestPolicy_bytes, "an ONNX policy");
-  session_ = std::make_unique<Session>(file);
+  try {
+    session_ = std::make_unique<Session>(file);
+  } catch (const Ort::Exception& error) {
+    const bool network = error.GetOrtErrorCode() != ORT_INVALID_PROTOBUF &&
+                         std::string_view(error.what()).find("does not have a graph") == std::string_view::npos;
+    if (network) throw;
+    refuse("isn't an ONNX network, or not a whole one; expected an ONNX policy");
+  }
 }
 
 OnnxNetwork::~OnnxNetwork() = default;

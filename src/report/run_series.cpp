@@ -327,7 +327,7 @@ RunSeries read_run(const fs::path& log, const work::Progress& progress) {
     throw std::runtime_error(log.string() + ": no log of a run: it has no STATE, REFERENCE or STATUS that can be read" +
                              (log.filename() != meant.filename() && std::filesystem::exists(meant)
                                   ? "; did you mean " + meant.string() + "?"
-                                  : ""));
+                                  : "; expected a log of pmg_controller or pmg_sil"));
   }
   if (run.timing.ticks == 0) {
     read_timing_csv((fs::is_directory(log) ? log : log.parent_path()) / "timing.csv", run);

@@ -10,6 +10,7 @@
 
 #include "bench/bench_writer.hpp"
 #include "files/nearest_name.hpp"
+#include "files/result_folder.hpp"
 
 namespace pmg::runtime {
 
@@ -50,9 +51,7 @@ BenchSession::BenchSession(const model::RobotModel& robot, const std::string& jo
     throw std::invalid_argument(fmt::format("{}: {} commands a second; expected {:g}, one a control tick",
                                             excitation.string(), excitation_.rate_hz, 1.0 / control_period_s_));
   }
-  if (std::filesystem::exists(out / "bench.yaml")) {
-    throw std::invalid_argument(out.string() + " holds a bench already; expected a new folder");
-  }
+  files::expect_unused(out, "a bench", {"bench.yaml"});
   load_ = model::hanging_load(robot, joint);
 }
 

@@ -17,6 +17,7 @@ namespace pmg {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AnyOf;
 using testing::HasSubstr;
 using testing::MatchesRegex;
 using testing::Not;
@@ -135,9 +136,37 @@ TEST_F(Words, WhatIsMissingOrTooMuchIsSaid) {
               "pmg_clips show: 'again' is one argument too many (pmg_clips show --help shows an example)");
   expect_line("pmg_send walk vx 0.3 --for 3", "pmg_send walk: 'vx' is one argument too many; did you mean --vx?");
   expect_line("pmg_sil --robot", "pmg_sil: --robot: its value is missing");
+  expect_line("pmg_send walk --vx 0.2 --vy --for 2", "pmg_send walk: --vy: its value is missing; --for follows it");
+  expect_line("pmg_send walk --vy --for=2", "pmg_send walk: --vy: its value is missing; --for=2 follows it");
+  expect_line("pmg_send walk --vy --fro 2", "pmg_send walk: --vy: its value is missing; --fro follows it");
+  expect_line("pmg_sil --policy none --scenario stand --out --json",
+              "pmg_sil: --out: its value is missing; --json follows it");
+  expect_line("pmg_calibrate_motor bench --also --fit x --out y",
+              "pmg_calibrate_motor: --also: its value is missing; --fit follows it");
+  expect_line("pmg_calibrate_zero log --tau -M 3 --out y",
+              "pmg_calibrate_zero: --tau: its value is missing; -M follows it");
   expect_line("pmg_sil --seed 1 --seed 2", "pmg_sil: --seed: is given more than once; expected it once");
   expect_line("pmg_sil --video --realtime", "pmg_sil: --realtime can't be given together with --video");
   expect_line("pmg_sil --excitation x", "pmg_sil: --excitation needs --bench");
+}
+
+TEST_F(Words, ANegativeNumberIsAValue) {
+  EXPECT_THAT(run("pmg_send walk --vx -0.2 --vy 0.1 --for x").err, HasSubstr("--for: 'x' isn't a number above 0"));
+}
+
+TEST_F(Words, NoProgramTakesAnOptionForAFile) {
+  for (const std::string line :
+       {"pmg_bus scan --robot --version", "pmg_clips show --clips --json", "pmg_controller --hal --gantry",
+        "pmg_diagnose b --out --json", "pmg_doctor --log --json", "pmg_eval gait --out --json",
+        "pmg_gamepad --robot --help", "pmg_key new anna --out --keys", "pmg_keyboard --robot --lcm-url",
+        "pmg_log export log --csv --json", "pmg_report log --out --json", "pmg_watch --robot --json",
+        "pmg_web --robot --help"}) {
+    const test::Finished refused = run(line);
+    EXPECT_EQ(refused.exit_code, 2) << line;
+    EXPECT_THAT(refused.err, HasSubstr(": its value is missing; --")) << line;
+    EXPECT_EQ(refused.out, "") << line;
+  }
+  EXPECT_FALSE(fs::exists("--json"));
 }
 
 TEST_F(Words, AValueThatIsNoneSaysWhatWasExpected) {
@@ -155,6 +184,8 @@ TEST_F(Words, AValueThatIsNoneSaysWhatWasExpected) {
   expect_line("pmg_eval gait --out x --jobs 0", "pmg_eval gait: --jobs: '0' isn't a number from 1 to 1024");
   expect_line("pmg_diagnose --step 1", "pmg_diagnose: --step: '1' isn't a number from 1e-05 to 0.01");
   expect_line("pmg_sil --seed many", "pmg_sil: --seed: 'many' isn't a whole number of at least 0");
+  expect_line("pmg_sil --seed -1 --scenario stand --out x", "pmg_sil: --seed: '-1' isn't a whole number of at least 0");
+  expect_line("pmg_web --port 99999", "pmg_web: --port: '99999' isn't a number from 0 to 65535");
   expect_line("pmg_sil --blend papre", "pmg_sil: --blend: 'papre' isn't known; did you mean paper?");
   expect_line("pmg_sil --blend both",
               "pmg_sil: --blend: 'both' isn't known; expected one of library, gain, paper, corners");
@@ -173,6 +204,71 @@ TEST_F(Words, NamesFromAClosedListAreMatchedToTheNearest) {
   EXPECT_THAT(run("pmg_sil --policy none --scenario " + (folder_ / "s.yaml").string() + " --out x").err,
               HasSubstr("s.yaml:3:"));
   EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+/// What people give in place of a file that they mean.
+std::vector<fs::path> wrong_files(const fs::path& folder, const std::string& ending) {
+  const fs::path missing = folder / ("missing" + ending), directory = folder / ("folder" + ending),
+                 empty = folder / ("empty" + ending), picture = folder / ("picture" + ending);
+  fs::create_directories(directory);  // and the folder of all
+  std::ofstream(empty).close();
+  std::ofstream(picture) << std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\1\0", 20);
+  return {missing, directory, empty, picture};
+}
+
+TEST_F(Words, AFileThatIsNotWhatWasMeantIsNamedBesideWhatWasExpected) {
+  const std::string out = " --out " + (folder_ / "out").string(), sil = "pmg_sil --policy none --scenario stand";
+  const std::string log = "test/data/logs/walk_fault_reset.lcm";
+  const std::vector<std::pair<std::string, std::string>> commands = {
+      {".lcm", "pmg_log info FILE"},
+      {".lcm", "pmg_log replay FILE"},
+      {".lcm", "pmg_log export FILE --csv " + (folder_ / "out").string()},
+      {".lcm", "pmg_report FILE" + out},
+      {".lcm", "pmg_calibrate_zero FILE --robot z1" + out},
+      {".lcm", "pmg_diagnose --robot z1 FILE" + out},
+      {".yaml", "pmg_sil --policy none --scenario FILE" + out},
+      {".yaml", sil + " --motor FILE" + out},
+      {".yaml", sil + " --inject FILE" + out},
+      {".yaml", sil + " --vary FILE" + out},
+      {"", sil + " --robot FILE" + out},
+      {".onnx", "pmg_sil --scenario stand --policy FILE" + out},
+      {".png", "pmg_sil --scenario stand --policy FILE" + out},
+      {"", "pmg_calibrate_motor FILE" + out},
+      {"", "pmg_diagnose FILE" + out},
+      {".yaml", "pmg_diagnose --robot z1 " + log + " --set-file FILE" + out},
+      {".yaml", "pmg_calibrate_zero " + log + " --robot z1 --motor FILE" + out},
+      {".yaml", "pmg_eval table2 --plants FILE" + out},
+      {".csv", "pmg_eval gait --norms FILE" + out},
+      {".bvh", "pmg_clips inspect FILE"},
+      {".c3d", "pmg_clips inspect FILE"},
+      {".npz", "pmg_clips inspect FILE"},
+      {".yaml", "pmg_clips build FILE" + out},
+      {"", "pmg_clips show --clips FILE"},
+      {".csv", "pmg_clips show --norms FILE"},
+      {".log", "pmg_bus replay FILE"},
+      {".yaml", "pmg_gamepad --mapping FILE"},
+  };
+  for (const auto& [ending, command] : commands) {
+    const fs::path folder = folder_ / ("of" + ending);  // a network beside a descriptor would give way to it
+    for (const fs::path& file : wrong_files(folder, ending)) {
+      std::string line = command;
+      line.replace(line.find("FILE"), 4, file.string());
+      const test::Finished refused = run(line);
+      EXPECT_EQ(refused.exit_code, 2) << line << refused.err;
+      EXPECT_THAT(refused.err, HasSubstr(file.string())) << line;
+      EXPECT_THAT(refused.err, AnyOf(HasSubstr("; expected "), HasSubstr(": there is no such file"))) << line;
+      EXPECT_THAT(refused.err, Not(HasSubstr(": ;"))) << line;
+      EXPECT_THAT(refused.err, Not(HasSubstr("onnxruntime"))) << line;
+      EXPECT_EQ(std::ranges::count(refused.err, '\n'), 1) << refused.err;
+      EXPECT_FALSE(fs::exists(folder_ / "out")) << line;
+    }
+  }
+}
+
+TEST_F(Words, APictureIsSaidToBeNoText) {
+  const std::string picture = wrong_files(folder_, ".yaml").back().string();
+  expect_line("pmg_sil --policy none --scenario " + picture + " --out x",
+              "pmg_sil: " + picture + ": isn't a text; expected a YAML file");
 }
 
 TEST_F(Words, AFileWhereAFolderIsExpectedIsSaidToBeOne) {

@@ -120,6 +120,18 @@ TEST_F(Reader, RefusesWhatIsNotOneMapping) {
   EXPECT_THAT(refusal([&] { reader("a: 1\n---\na: 2\n"); }), HasSubstr("holds 2 YAML documents; expected one"));
 }
 
+TEST_F(Reader, ATabAnEmptyFileAndAPictureAreCalledWhatTheyAre) {
+  const auto refused = [&](const std::string& text) {
+    std::ofstream(directory_ / "x.yaml") << text;
+    const std::string words = refusal([&] { ConfigReader::from_file(directory_ / "x.yaml"); });
+    return words.substr(words.find("x.yaml"));
+  };
+  EXPECT_EQ(refused("a:\n  b: 1\n\tc: 2\n"), "x.yaml:3:1: a tab indents this line; expected blanks");
+  EXPECT_EQ(refused(""), "x.yaml: is empty; expected a YAML file");
+  EXPECT_EQ(refused(std::string("\x89PNG\0\0", 6)), "x.yaml: isn't a text; expected a YAML file");
+  EXPECT_EQ(refused("a: \"\\q\"\n"), "x.yaml:1:7: unknown escape character: q; expected YAML");
+}
+
 TEST_F(Reader, SaysThatAFileIsMissing) {
   try {
     ConfigReader::from_file(directory_ / "none.yaml");

@@ -7,9 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "hal/hoist_line.hpp"
 #include "networked_robot.hpp"
 #include "operator/drive.hpp"
 #include "operator/mode_wish.hpp"
+#include "operator/robot_board.hpp"
 #include "operator/words.hpp"
 #include "pmg_msgs/link_t.hpp"
 
@@ -254,6 +256,43 @@ TEST_F(OperatorTest, AWalkClimbsDrivesComesToRestAndStands) {
   EXPECT_EQ(robot_.result().mode, Mode::kStand);
   EXPECT_EQ(robot_.result().reference.command[kVx], 0.0);
   EXPECT_EQ(robot_.result().driving, control::Source{}) << "whoever comes next need not wait for its lease";
+}
+
+TEST_F(OperatorTest, ASlowSimulationsHoistIsWaitedForAsLongAsItSaysThatItWorks) {
+  hal::HoistLine hoist;
+  robot_.comms.work(&hoist);
+  hoist.show(hal::CraneState::kLowering);
+  const DriveOptions options{.duration_s = 0.5, .climb = true, .timeout_s = 1.0};
+  Drive drive(mine_, "biped", forward(0.3), options);
+  EXPECT_EQ(network_.finish(drive, 4.5), Progress::kPending) << drive.text();
+  hoist.show(hal::CraneState::kFree);
+  EXPECT_EQ(network_.finish(drive), Progress::kReached) << drive.last_words();
+  hoist.show(hal::CraneState::kLettingGo);
+  Drive stuck(mine_, "biped", forward(0.3), options);
+  EXPECT_EQ(network_.finish(stuck, 10.0), Progress::kFailed);
+  EXPECT_THAT(stuck.last_words(), HasSubstr("the hoist lets go of the robot and doesn't end"));
+}
+
+TEST_F(OperatorTest, ASimulatedControllerMayBeSilentForTwoSecondsARealOneForHalfASecond) {
+  for (const auto& [backend, allowed_s] : {std::pair{"can", 0.5}, std::pair{"sil", 2.0}}) {
+    Drive drive(mine_, "biped", forward(0.3), {.duration_s = 100.0, .climb = true});
+    RobotNews news;
+    news.info.emplace();
+    news.info->backend = backend;
+    const auto go = [&] {
+      network_.advance();
+      return drive.step(&news);
+    };
+    while (!drive.driving()) ASSERT_EQ(go(), Progress::kPending) << drive.text();
+    network_.comms_alive = false;
+    double silent_s = 0.0;
+    for (; silent_s < 5.0 && go() == Progress::kPending; silent_s += 0.01) {
+    }
+    EXPECT_NEAR(silent_s, allowed_s, 0.05) << backend;
+    EXPECT_EQ(drive.text(), "the controller is no longer heard");
+    network_.comms_alive = true;
+    for (int k = 0; k < 200; ++k) network_.advance();
+  }
 }
 
 TEST_F(OperatorTest, ANewSourcesFirstCommandGoesBeforeItsRequestForWalk) {

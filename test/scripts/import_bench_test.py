@@ -87,7 +87,16 @@ class ImportBench(unittest.TestCase):
 
     def test_a_unit_that_neither_name_nor_option_says_is_refused(self):
         self.expect_refused("what unit 'pos' is in", self.sine(), *BASE, *MAPS[:4], "--map", "q_rad=pos")
+        self.expect_refused("measures an angle", self.sine(), *BASE, "--map", "t_s=time[deg]", *MAPS[2:])
         self.expect_refused("measures a time", self.sine(), *BASE, *MAPS[:4], "--map", "q_rad=pos[ms]")
+
+    def test_degrees_told_to_be_radians_are_asked_about(self):
+        rad = ["--map", "t_s=time[ms]", "--map", "q_cmd_rad=goal[rad]", "--map", "q_rad=pos[rad]"]
+        done = self.run_import(self.sine(), *BASE, *rad)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("log.csv: q_rad reaches 48 rad, 7.64 turns; were these degrees?", done.stderr)
+        self.out = self.folder / "degrees"
+        self.assertEqual(self.run_import(self.sine(), *BASE, *MAPS).stderr, "")
 
     def test_gains_that_nothing_says_are_refused(self):
         self.expect_refused("kp_Nm_per_rad and kd_Nm_s_per_rad", self.sine(), *BASE[:4], *MAPS)

@@ -118,6 +118,11 @@ class ImportPolicy(unittest.TestCase):
         path.write_text(yaml.safe_dump(told, sort_keys=False) + "ids: !!python/object/apply:builtins.slice [null, null, null]\n")
         return ["--unitree", path, "--motors", "robot"]
 
+    def test_a_robot_that_is_no_folder_and_no_urdf_is_named_with_what_was_expected(self):
+        network, _ = self.network(24)
+        self.urdf = self.folder / "z9"
+        self.expect_refused(f"--robot {self.urdf}: there is no robot.yaml; expected a robot's folder", network, *self.unitree())
+
     def test_unitrees_description_becomes_a_descriptor_in_the_policys_order(self):
         network, weights = self.network(24)
         told = self.expect_descriptor(network, *self.unitree())
