@@ -82,7 +82,7 @@ void show_parameters(pages::Page& page, const FitResults& results) {
   pages::Table table{.header = {"parameter", "value", "one standard deviation", "unit", "range of the search", ""},
                      .rows = {}};
   for (std::size_t i = 0; i < results.confidence.size(); ++i) {
-    const FitParameter& p = results.problem->parameters()[i];
+    const Unknown& p = results.problem->parameters()[i];
     const double x = value(results.fit.model, p.name);
     table.rows.push_back({p.name, fmt::format("{:.5g}", x), deviation_text(results.confidence[i]),
                           unit_on_rig(p.unit(), *results.bench), fmt::format("{:g} to {:g}", p.lower, p.upper),

@@ -49,7 +49,7 @@ struct FitResults {
 /// one. A negative estimate within its uncertainty counts as 0. A significantly negative one is impossible: then
 /// nothing is taken, rollouts fit all parameters, and the result is false.
 bool take_inverse_dynamics(const InverseDynamics& found, const bench::Bench& bench, JointModel& start,
-                           std::vector<FitParameter>& unknowns);
+                           Unknowns& unknowns);
 
 Assessment assess(const std::string& filter, const std::vector<SingleJoint>& runs, const JointModel& before,
                   const JointModel& after, unsigned threads);
@@ -74,9 +74,9 @@ std::string unit_on_rig(std::string unit, const bench::Bench& bench);
 std::string deviation_text(const Confidence& confidence);
 
 /// A warning about a fitted parameter, or "".
-std::string reservation(const FitParameter& parameter, double value, const Confidence& confidence);
+std::string reservation(const Unknown& parameter, double value, const Confidence& confidence);
 
 /// True if the value lies at an edge of its range: the optimum may be outside.
-bool at_bound(const FitParameter& parameter, double value);
+bool at_bound(const Unknown& parameter, double value);
 
 }  // namespace pmg::calib

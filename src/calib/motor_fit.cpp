@@ -6,8 +6,6 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
-#include <numeric>
-#include <random>
 
 #include "calib/gauss_newton.hpp"
 #include "work/parallel.hpp"
@@ -20,21 +18,6 @@ double seconds(const std::vector<SingleJoint>& runs) {
   double sum_s = 0.0;
   for (const SingleJoint& run : runs) sum_s += static_cast<double>(run.steps()) * run.step_s();
   return sum_s;
-}
-
-/// Latin hypercube: each row of each dimension holds one point.
-std::vector<std::vector<double>> spread_points(std::size_t count, std::size_t dimensions, unsigned seed) {
-  std::mt19937 random(seed);
-  std::vector<std::vector<double>> points(count, std::vector<double>(dimensions));
-  std::vector<std::size_t> rows(count);
-  for (std::size_t d = 0; d < dimensions; ++d) {
-    std::iota(rows.begin(), rows.end(), std::size_t{0});
-    for (std::size_t i = count; i > 1; --i) std::swap(rows[i - 1], rows[random() % i]);
-    for (std::size_t i = 0; i < count; ++i) {
-      points[i][d] = (static_cast<double>(rows[i]) + 0.5) / static_cast<double>(count);
-    }
-  }
-  return points;
 }
 
 /// One fit: screening => searches from several starts => polish.
@@ -68,13 +51,14 @@ class MotorFitRun {
     std::vector<std::vector<double>> points =
         spread_points(options_.screened_per_dimension * all_.dimensions(), all_.dimensions(), options_.seed);
     points.push_back(all_.point_of(all_.start()));
-    std::vector<Found> found(points.size());
+    const auto count = static_cast<double>(points.size());
     const Loss loss = loss_of(few_, 1);
-    work::for_each_in_parallel(points.size(), options_.threads, [&](std::size_t i) {
-      found[i] = {points[i], stopped_ ? 1e9 : loss(points[i]), 1};
-      if (i % 16 == 0) report(0.1 * static_cast<double>(i) / static_cast<double>(points.size()), "looking for starts");
-    });
-    sort(found);
+    std::atomic<int> looks{0};
+    const auto looked = [&](const std::vector<double>& point) {
+      if (const int look = looks++; look % 16 == 0) report(0.1 * look / count, "looking for starts");
+      return stopped_ ? 1e9 : loss(point);
+    };
+    std::vector<Found> found = screened(looked, std::move(points), options_.threads);
     found.resize(std::min<std::size_t>(found.size(), std::max(1U, options_.starts)));
     return found;
   }
@@ -185,10 +169,6 @@ class MotorFitRun {
     const std::lock_guard lock(reporting_);
     share_ = std::max(share_, share);
     if (!progress_(share_, doing)) stopped_ = true;
-  }
-
-  static void sort(std::vector<Found>& found) {
-    std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.loss < b.loss; });
   }
 
   const FitProblem& all_;

@@ -66,12 +66,10 @@ class QuickModel {
   std::vector<double> log_errors(const std::vector<calib::SingleJoint>& joints, const calib::JointModel& model) const;
 
  private:
-  std::vector<effects::Unknown> unknowns(const std::vector<calib::SingleJoint>& runs,
-                                         const std::vector<std::string>& extra) const;
-  calib::JointModel screened(const std::vector<calib::SingleJoint>& runs,
-                             const std::vector<effects::Unknown>& unknowns) const;
-  QuickFit minimised(const std::vector<calib::SingleJoint>& runs, const std::vector<effects::Unknown>& unknowns,
-                     const QuickFit& from, const std::vector<SharedFactor>& shared, int most_iterations) const;
+  calib::Unknowns unknowns(const std::vector<calib::SingleJoint>& runs, const std::vector<std::string>& extra) const;
+  calib::JointModel screened(const std::vector<calib::SingleJoint>& runs, const calib::Unknowns& unknowns) const;
+  QuickFit minimised(const std::vector<calib::SingleJoint>& runs, const calib::Unknowns& unknowns, const QuickFit& from,
+                     const std::vector<SharedFactor>& shared, int most_iterations) const;
   QuickFit with_rate_limit(const std::vector<calib::SingleJoint>& runs, const QuickFit& fit) const;
   QuickFit at(const std::vector<calib::SingleJoint>& runs, QuickFit fit) const;
 

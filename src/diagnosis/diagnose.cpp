@@ -50,7 +50,7 @@ class JointDiagnosisRun {
         direct_evidence(checks_, base.model.actuator, diagnosis_.noise_floor.rms_rad, base.scale.speed_rad_s, by_), by_,
         {.report = [this](double, std::string_view doing) { report(share_ + 0.02 * (0.9 - share_), doing); },
          .interrupted = progress_.interrupted});
-    for (const effects::Unknown& u : search.base_model().unknowns) diagnosis_.base_parameters.push_back(u.name);
+    for (const calib::Unknown& u : search.base_model().unknowns) diagnosis_.base_parameters.push_back(u.name);
     auto [chosen, final_fit] = final_model(search, all);
     const bool differ_at_end = tell_assemblies(fitted, scored, final_fit, base, true);
     const effects::NestedFit told(fitted, options_.threads);

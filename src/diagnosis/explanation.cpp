@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "calib/fit_problem.hpp"
+#include "calib/unknown.hpp"
 #include "effects/catalogue.hpp"
 #include "effects/folds.hpp"
 #include "effects/intervals.hpp"
@@ -126,7 +126,7 @@ class Explaining {
   }
 
   bool is_rival(const Trial& other, const effects::SeenSeparation& apart) const {
-    for (const effects::Unknown& u : other.extension.fitted.unknowns) {
+    for (const calib::Unknown& u : other.extension.fitted.unknowns) {
       const bool stiffest = u.name == "transmission.stiffness_Nm_per_rad" &&
                             calib::value(other.extension.fitted.model, u.name) > 0.99 * u.upper;
       if (stiffest) return false;  // at the upper bound of stiffness the shaft is rigid: no rival
@@ -140,7 +140,7 @@ class Explaining {
 
   evidence::ParameterEstimate estimate(const std::string& parameter) const {
     for (std::size_t i = 0; i < intervals_.size(); ++i) {
-      const effects::Unknown& u = from_.fitted.unknowns[i];
+      const calib::Unknown& u = from_.fitted.unknowns[i];
       if (u.name == parameter) return {parameter, intervals_[i], u.unit()};
     }
     const double value = calib::value(from_.fitted.model, parameter);

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/running_program.hpp"
-#include "calib/fit_problem.hpp"
 #include "calib/synthetic_bench.hpp"
+#include "calib/unknown.hpp"
 #include "effects/fit_words.hpp"
 #include "recorded_benches.hpp"
 #include "sim/motor_file.hpp"
