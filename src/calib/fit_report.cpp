@@ -107,7 +107,7 @@ void show_inverse(pages::Page& page, const InverseDynamics& found, bool taken) {
   }
   if (taken) page.paragraph("The model has these values; the rollouts found what they leave open.");
   page.paragraph(fmt::format(
-      "Least squares of the recorded drive, without simulation, over {} windows: residual {:.3g} Nm (N "
+      "Least squares of the recorded drive output, without simulation, over {} windows: residual {:.3g} Nm (N "
       "on a linear axis). Where it disagrees with the fit, friction isn't Coulomb and viscous alone, or the drive's "
       "timing isn't as modelled.",
       found.windows, found.residual_Nm));

@@ -102,7 +102,7 @@ std::string deviation_text(const Confidence& confidence) {
 std::string reservation(const Unknown& parameter, double value, const Confidence& confidence) {
   if (at_bound(parameter, value)) return "at its range's edge";
   if (!confidence.told_only_with.empty())
-    return fmt::format("not told: other values move the same with another {}",
+    return fmt::format("not determined: other values move the same with another {}",
                        fmt::join(confidence.told_only_with, ", "));
   if (!std::isfinite(confidence.deviation)) return "these runs don't show it";
   if (!confidence.confounded_with.empty()) return "hard to tell from " + confidence.confounded_with;
@@ -177,7 +177,7 @@ work::Worth worth_of(const FitResults& results) {
     if (!results.confidence[i].told_only_with.empty()) alike.insert(results.problem->parameters()[i].name);
   }
   worth.add_if(!alike.empty(), work::Grade::kOpen,
-               fmt::format("these runs don't tell {}: other values of them together move the joint the same",
+               fmt::format("these runs don't determine {}: other values of them together move the joint the same",
                            fmt::join(alike, ", ")));
   return worth;
 }

@@ -45,9 +45,9 @@ struct FitResults {
 };
 
 /// Moves the parameters that inverse dynamics determines from the unknowns into the start model: rollouts cannot
-/// separate inertia from a lag of the drive's velocity, the recorded drive can. If no unknown is left, that lag becomes
-/// one. A negative estimate within its uncertainty counts as 0. A significantly negative one is impossible: then
-/// nothing is taken, rollouts fit all parameters, and the result is false.
+/// separate inertia from a lag of the drive's velocity, the recorded drive output can. If no unknown is left, that lag
+/// becomes one. A negative estimate within its uncertainty counts as 0. A significantly negative one is impossible:
+/// then nothing is taken, rollouts fit all parameters, and the result is false.
 bool take_inverse_dynamics(const InverseDynamics& found, const bench::Bench& bench, JointModel& start,
                            Unknowns& unknowns);
 
@@ -55,7 +55,7 @@ Assessment assess(const std::string& filter, const std::vector<SingleJoint>& run
                   const JointModel& after, unsigned threads);
 
 /// Interrupted; off its data, where these have faults or the model misses them by kExplainedShare of what a joint that
-/// stands still misses; no better than the start; open, where a parameter can't be told or is at its range's edge.
+/// stands still misses; no better than the start; open, where a parameter isn't determined or is at its range's edge.
 work::Worth worth_of(const FitResults& results);
 
 nlohmann::ordered_json fit_json(const FitResults& results);

@@ -39,7 +39,7 @@ calib::JointModel with_factors(calib::JointModel model, const RunFactors& factor
   model.actuator.drive.kd_scale *= factors.kd;
   model.inertia_scale *= factors.load;
   model.gravity_scale *= factors.load;
-  model.feed_forward_scale *= factors.told_torque;
+  model.feed_forward_scale *= factors.commanded_torque;
   return model;
 }
 

@@ -12,11 +12,11 @@ namespace pmg::data_faults {
 
 /// Factors on numbers of bench.yaml and runs.csv, one for each run.
 struct RunFactors {
-  double kp = 1.0, kd = 1.0, load = 1.0, told_torque = 1.0;
+  double kp = 1.0, kd = 1.0, load = 1.0, commanded_torque = 1.0;
 };
 
 /// One unknown factor that some runs share: of a gain, of a load (inertia and gravity), or of the torque that the drive
-/// is told.
+/// is commanded.
 struct SharedFactor {
   double RunFactors::*of = &RunFactors::kp;
   std::vector<std::size_t> runs;

@@ -153,13 +153,13 @@ class Explaining {
   }
 
   void reject() {
-    std::set<std::string> told(chosen_.effects.begin(), chosen_.effects.end());
-    for (const Cause& cause : found_.causes) told.insert(cause.or_instead.begin(), cause.or_instead.end());
+    std::set<std::string> listed(chosen_.effects.begin(), chosen_.effects.end());
+    for (const Cause& cause : found_.causes) listed.insert(cause.or_instead.begin(), cause.or_instead.end());
     for (const auto& [effect, why] : search_.left_out()) {
-      if (told.insert(effect).second) found_.rejected.push_back({effect, why, LookedAt::kFit});
+      if (listed.insert(effect).second) found_.rejected.push_back({effect, why, LookedAt::kFit});
     }
     for (const effects::Effect& one : effects::catalogue()) {
-      if (!told.contains(one.name)) found_.rejected.push_back(rejected(one.name));
+      if (!listed.contains(one.name)) found_.rejected.push_back(rejected(one.name));
     }
   }
 

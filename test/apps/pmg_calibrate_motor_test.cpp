@@ -149,7 +149,7 @@ TEST_F(PmgCalibrateMotor, FitsTheLoadThatBenchYamlCallsUnknown) {
     ASSERT_TRUE(json["parameters"].contains(name)) << name;
     EXPECT_TRUE(json["parameters"][name]["deviation"].is_null()) << "all torques may be larger by one factor";
   }
-  EXPECT_THAT(test::text_of(out_ / "motor.yaml"), HasSubstr("these runs don't tell"));
+  EXPECT_THAT(test::text_of(out_ / "motor.yaml"), HasSubstr("these runs don't determine"));
 }
 
 TEST_F(PmgCalibrateMotor, SaysTodaysWordForAnEarlierOne) {
