@@ -104,11 +104,7 @@ void declare(CLI::App& app, Arguments& arguments) {
 std::vector<std::string> names_to_fit(const Arguments& arguments, const bench::Bench& bench) {
   std::vector<std::string> names = arguments.only ? std::vector<std::string>{} : calib::basic_parameters(bench);
   for (const std::string& name : calib::unknown_loads(bench)) names.push_back(name);
-  for (const std::string& word : arguments.also) {
-    for (const std::string& name : effects::fit_word(word).parameters) {
-      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-    }
-  }
+  for (const std::string& word : arguments.also) calib::add_missing(names, effects::fit_word(word).parameters);
   return names;
 }
 
@@ -125,9 +121,9 @@ double number(const std::string& text, const std::string& what) {
   return *value;
 }
 
-std::vector<calib::FitParameter> parameters(const Arguments& arguments, const bench::Bench& bench) {
-  std::vector<calib::FitParameter> found;
-  for (const std::string& name : names_to_fit(arguments, bench)) found.push_back(calib::fit_parameter(name, bench));
+calib::Unknowns parameters(const Arguments& arguments, const bench::Bench& bench) {
+  calib::Unknowns found;
+  for (const std::string& name : names_to_fit(arguments, bench)) found.push_back(calib::unknown(name, bench));
   for (const std::string& text : arguments.ranges) {
     const auto [name, range] = split(text, "NAME=LOWER:UPPER");
     const std::size_t colon = range.find(':');
@@ -168,7 +164,7 @@ void print_summary(const calib::FitResults& results, const fs::path& out) {
   if (const std::string worth = worth_of(results).sentence(); !worth.empty()) std::cout << worth << '\n';
   const std::string unit = calib::position_unit(*results.bench, true);
   for (std::size_t i = 0; i < results.confidence.size(); ++i) {
-    const calib::FitParameter& p = results.problem->parameters()[i];
+    const calib::Unknown& p = results.problem->parameters()[i];
     const double value = calib::value(results.fit.model, p.name);
     const std::string reservation = calib::reservation(p, value, results.confidence[i]);
     std::cout << fmt::format("{:34} {:>11.5g} +- {:<8} {}{}\n", p.name, value,
@@ -243,7 +239,7 @@ int calibrate(const Arguments& arguments) {
   }
   calib::FitResults results;
   const bench::Bench bench = examined(as_recorded, arguments, apps::shown(progress), results.data);
-  std::vector<calib::FitParameter> unknowns = parameters(arguments, bench);
+  calib::Unknowns unknowns = parameters(arguments, bench);
   calib::JointModel start = start_model(arguments, bench);
   const double step_s = arguments.step_s > 0.0 ? arguments.step_s : calib::simulation_step_s(bench);
   const work::Progress reading = apps::shown(progress, "reading " + bench.folder.string());

@@ -18,8 +18,8 @@ int main(int argc, char** argv) try {
   std::vector<std::string> names =
       calib::basic_parameters(bench);  // gains and rotor, as far as bench.yaml doesn't know
   names.insert(names.end(), {"friction.viscous_Nm_s_per_rad", "friction.coulomb_Nm"});
-  std::vector<calib::FitParameter> unknowns;
-  for (const std::string& name : names) unknowns.push_back(calib::fit_parameter(name, bench));
+  calib::Unknowns unknowns;
+  for (const std::string& name : names) unknowns.push_back(calib::unknown(name, bench));
 
   calib::JointModel start;
   start.actuator = bench.known;

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "assembly/parameters.hpp"
-#include "calib/fit_problem.hpp"
 #include "calib/fit_results.hpp"
+#include "calib/unknown.hpp"
 #include "effects/catalogue.hpp"
 #include "fitting/covariance.hpp"
 
@@ -72,8 +72,7 @@ TestedBeside CandidateSearch::beside(const std::vector<Passed>& taken, Eigen::In
   for (const Passed& one : taken) found.effects.push_back(one.effect);
   const auto used = [&](Eigen::Index c) {
     const std::string& name = equations_.columns[static_cast<std::size_t>(c)].name;
-    const bool of_model = std::any_of(in_.fitted.unknowns.begin(), in_.fitted.unknowns.end(),
-                                      [&](const effects::Unknown& u) { return u.name == name; });
+    const bool of_model = calib::place_of(in_.fitted.unknowns, name) >= 0;
     const bool varies =
         std::any_of(taken.begin(), taken.end(), [&](const Passed& one) { return one.effect.column == c; });
     const bool physics = std::find(kLoadPhysics.begin(), kLoadPhysics.end(), name) != kLoadPhysics.end();
@@ -131,7 +130,7 @@ bool CandidateSearch::take_one(std::vector<Passed>& taken) {
 }
 
 Variation CandidateSearch::described(const Passed& best, const std::vector<Passed>& passed) const {
-  const effects::Unknown& u = equations_.columns[static_cast<std::size_t>(best.effect.column)];
+  const calib::Unknown& u = equations_.columns[static_cast<std::size_t>(best.effect.column)];
   Variation found{.parameter = u.name,
                   .unit = calib::unit_on_rig(u.unit(), in_.bench),
                   .columns = best.effect.grouping.columns,

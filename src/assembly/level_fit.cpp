@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/fit_problem.hpp"
+#include "calib/unknown.hpp"
 #include "fitting/covariance.hpp"
 #include "fitting/f_distribution.hpp"
 
@@ -24,8 +24,8 @@ LevelFit::LevelFit(const effects::NestedFit& fit, const effects::NestedModel& at
       const LevelEffect& effect = varying_[v].effect;
       const int level = effect.grouping.level_of_run[r];
       if (level < 0) continue;
-      const effects::Unknown& u = at_.unknowns[static_cast<std::size_t>(effect.column)];
-      const double per_value = u.logarithmic ? 1.0 / u.value(at_.coordinates[effect.column]) : 1.0;
+      const calib::Unknown& u = at_.unknowns[static_cast<std::size_t>(effect.column)];
+      const double per_value = 1.0 / u.slope(at_.coordinates[effect.column]);
       all.col(first_level_[v] + level) = columns.col(effect.column) * per_value;
     }
     jacobian_.push_back(std::move(all));
@@ -36,7 +36,7 @@ std::vector<std::vector<bench::AssemblyDifference>> LevelFit::differences(const 
   std::vector<std::vector<bench::AssemblyDifference>> found(fit_.runs().size());
   for (std::size_t v = 0; v < varying_.size(); ++v) {
     const LevelEffect& effect = varying_[v].effect;
-    const effects::Unknown& u = at_.unknowns[static_cast<std::size_t>(effect.column)];
+    const calib::Unknown& u = at_.unknowns[static_cast<std::size_t>(effect.column)];
     for (std::size_t r = 0; r < found.size(); ++r) {
       const int level = effect.grouping.level_of_run[r];
       if (level >= 0) found[r].push_back({u.name, x[first_level_[v] + level], u.lower, u.upper});
@@ -62,14 +62,14 @@ fitting::Problem LevelFit::problem(std::vector<calib::SingleJoint>& runs, const 
                                    const auto differs = differences(x);
                                    for (std::size_t r = 0; r < runs.size(); ++r) runs[r].set_differences(differs[r]);
                                  }
-                                 return calib::residuals(model_at(at_, x.head(at_.coordinates.size())), runs,
+                                 return calib::residuals(calib::model_at(at_.model, at_.unknowns, x), runs,
                                                          fit_.threads());
                                },
                            .coordinates = at_.ranges,
                            .prior_weight = at_.prior_weight,
                            .known = &known};
   for (const VaryingParameter& one : with_levels ? varying_ : std::vector<VaryingParameter>{}) {
-    const effects::Unknown& u = at_.unknowns[static_cast<std::size_t>(one.effect.column)];
+    const calib::Unknown& u = at_.unknowns[static_cast<std::size_t>(one.effect.column)];
     const double reach = u.upper - u.lower;
     const double deviation = std::sqrt(problem.prior_weight / one.effect.penalty);
     for (std::size_t level = 0; level < one.effect.grouping.levels.size(); ++level)
@@ -94,7 +94,7 @@ FittedLevels LevelFit::fitted(const std::vector<fitting::Fold>& folds, bool with
                                 .blocks = fit_.blocks().normal_equations(problem.residuals(best.x), known),
                                 .prior_weight = problem.prior_weight};
   FittedLevels found;
-  found.model = model_at(at_, best.x.head(at_.coordinates.size()));
+  found.model = calib::model_at(at_.model, at_.unknowns, best.x);
   found.held_out = fitting::held_out_squares(problem.residuals, fit_.blocks(), linear, folds);
   if (!with_levels) return found;
   read_off(found, linear);
@@ -106,8 +106,9 @@ void LevelFit::read_off(FittedLevels& found, const fitting::LinearisedFit& fit) 
   const Eigen::MatrixXd inverse = fitting::solved(information, Eigen::MatrixXd::Identity(count_, count_));
   for (std::size_t v = 0; v < varying_.size(); ++v) {
     const LevelEffect& effect = varying_[v].effect;
-    const effects::Unknown& u = at_.unknowns[static_cast<std::size_t>(effect.column)];
-    const double mean = u.value(fit.coordinates[effect.column]), per_coordinate = u.logarithmic ? mean : 1.0;
+    const calib::Unknown& u = at_.unknowns[static_cast<std::size_t>(effect.column)];
+    const double mean = u.value(fit.coordinates[effect.column]),
+                 per_coordinate = u.slope(fit.coordinates[effect.column]);
     const double wide = fitting::student95(varying_[v].freedom) * std::sqrt(varying_[v].unit_squares);
     const double of_mean = wide * per_coordinate * std::sqrt(std::max(0.0, inverse(effect.column, effect.column)));
     found.means.push_back({mean, std::max(u.lower, mean - of_mean), std::min(u.upper, mean + of_mean)});

@@ -4,15 +4,10 @@
 
 namespace pmg::assembly {
 
-Eigen::Index RunEquations::column(const std::string& parameter) const {
-  const auto found =
-      std::find_if(columns.begin(), columns.end(), [&](const effects::Unknown& u) { return u.name == parameter; });
-  return found == columns.end() ? -1 : found - columns.begin();
-}
+Eigen::Index RunEquations::column(const std::string& parameter) const { return calib::place_of(columns, parameter); }
 
 double RunEquations::per_value(Eigen::Index column) const {
-  const effects::Unknown& u = columns[static_cast<std::size_t>(column)];
-  return u.logarithmic ? 1.0 / u.value(coordinates[column]) : 1.0;
+  return 1.0 / columns[static_cast<std::size_t>(column)].slope(coordinates[column]);
 }
 
 void RunEquations::leave_out(std::size_t run) {
@@ -39,22 +34,9 @@ RunEquations run_equations(const effects::NestedFit& fit, const effects::NestedM
 
 effects::NestedModel with_columns(effects::NestedModel model, const bench::Bench& bench,
                                   const effects::BenchScale& scale, const std::vector<std::string>& parameters) {
-  for (const std::string& parameter : parameters) {
-    const effects::Unknown full = effects::unknown(parameter, bench, scale);
-    const auto there = std::find_if(model.unknowns.begin(), model.unknowns.end(),
-                                    [&](const effects::Unknown& u) { return u.name == parameter; });
-    if (there == model.unknowns.end())
-      model.unknowns.push_back(full);
-    else
-      *there = full;
-  }
-  model.ranges.clear();
-  model.coordinates.resize(static_cast<Eigen::Index>(model.unknowns.size()));
-  for (std::size_t i = 0; i < model.unknowns.size(); ++i) {
-    const effects::Unknown& u = model.unknowns[i];
-    model.ranges.push_back(u.range());
-    model.coordinates[static_cast<Eigen::Index>(i)] = u.coordinate(calib::value(model.model, u.name));
-  }
+  for (const std::string& parameter : parameters) calib::put(model.unknowns, effects::unknown(parameter, bench, scale));
+  model.ranges = calib::ranges(model.unknowns);
+  model.coordinates = calib::coordinates(model.unknowns, model.model);
   model.blocks.clear();
   return model;
 }

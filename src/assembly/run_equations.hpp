@@ -11,7 +11,7 @@ namespace pmg::assembly {
 
 /// A linearised model. Columns are coordinates: the model's unknowns first, then numbers that are only looked at.
 struct RunEquations {
-  std::vector<effects::Unknown> columns;
+  calib::Unknowns columns;
   Eigen::VectorXd coordinates;     ///< of the columns, at the model
   fitting::NormalEquations prior;  ///< of the columns
   std::vector<fitting::NormalEquations> of_block, of_run;

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "assembly/candidate_search.hpp"
-#include "calib/fit_problem.hpp"
 #include "calib/joint_runs.hpp"
+#include "calib/unknown.hpp"
 
 namespace pmg::assembly {
 
@@ -78,7 +78,7 @@ class Search {
         return grouping.columns == one.effect.grouping.columns;
       });
       if (all == groupings.end()) return false;  // on all runs it groups them otherwise
-      const Eigen::Index column = place_of(search.name_of(one), at);
+      const Eigen::Index column = calib::place_of(at.unknowns, search.name_of(one));
       if (!search.has_own_mean(one)) pin(at.ranges[static_cast<std::size_t>(column)], at.coordinates[column]);
       varying.push_back({{column, *all, one.effect.penalty}, one.evidence.unit_squares, one.evidence.freedom});
     }
@@ -92,10 +92,7 @@ class Search {
     if (!refused(gain, in_.noise_squares, by_).empty()) return false;
     found_.fitted = std::move(at);
     found_.fitted.model = with.model;
-    for (std::size_t i = 0; i < found_.fitted.unknowns.size(); ++i) {
-      const effects::Unknown& u = found_.fitted.unknowns[i];
-      found_.fitted.coordinates[static_cast<Eigen::Index>(i)] = u.coordinate(calib::value(with.model, u.name));
-    }
+    found_.fitted.coordinates = calib::coordinates(found_.fitted.unknowns, with.model);
     take_over(with, gain);
     return true;
   }
@@ -110,12 +107,6 @@ class Search {
       one.deviations = gain.deviations;
       one.folds_won = gain.folds_won;
     }
-  }
-
-  static Eigen::Index place_of(const std::string& parameter, const effects::NestedModel& model) {
-    return std::find_if(model.unknowns.begin(), model.unknowns.end(),
-                        [&](const effects::Unknown& u) { return u.name == parameter; }) -
-           model.unknowns.begin();
   }
 
   /// Keeps a mean at its value: other numbers of the model stand for it.

@@ -10,8 +10,8 @@ namespace pmg::calib {
 
 /// Confidence of one parameter at the fit's result.
 struct Confidence {
-  /// One standard deviation, in the parameter's unit; infinite if the runs don't tell the parameter: they don't show
-  /// it, or only together with others.
+  /// One standard deviation, in the parameter's unit; infinite if the runs don't determine the parameter: they don't
+  /// show it, or only together with others.
   double deviation = 0.0;
   std::vector<std::string> told_only_with;  ///< parameters that could change with it so that nothing moves otherwise
   std::string confounded_with;              ///< the parameter that correlates with it by more than 0.98, or ""

@@ -82,7 +82,7 @@ void show_parameters(pages::Page& page, const FitResults& results) {
   pages::Table table{.header = {"parameter", "value", "one standard deviation", "unit", "range of the search", ""},
                      .rows = {}};
   for (std::size_t i = 0; i < results.confidence.size(); ++i) {
-    const FitParameter& p = results.problem->parameters()[i];
+    const Unknown& p = results.problem->parameters()[i];
     const double x = value(results.fit.model, p.name);
     table.rows.push_back({p.name, fmt::format("{:.5g}", x), deviation_text(results.confidence[i]),
                           unit_on_rig(p.unit(), *results.bench), fmt::format("{:g} to {:g}", p.lower, p.upper),
@@ -107,7 +107,7 @@ void show_inverse(pages::Page& page, const InverseDynamics& found, bool taken) {
   }
   if (taken) page.paragraph("The model has these values; the rollouts found what they leave open.");
   page.paragraph(fmt::format(
-      "Least squares of the recorded drive, without simulation, over {} windows: residual {:.3g} Nm (N "
+      "Least squares of the recorded drive output, without simulation, over {} windows: residual {:.3g} Nm (N "
       "on a linear axis). Where it disagrees with the fit, friction isn't Coulomb and viscous alone, or the drive's "
       "timing isn't as modelled.",
       found.windows, found.residual_Nm));

@@ -62,8 +62,7 @@ Json noise_json(const bench::NoiseFloor& floor) {
 }
 
 /// JSON has no infinity: null.
-Json parameter_json(const bench::Bench& bench, const FitParameter& parameter, double value,
-                    const Confidence& confidence) {
+Json parameter_json(const bench::Bench& bench, const Unknown& parameter, double value, const Confidence& confidence) {
   Json json = {{"value", value},
                {"deviation", std::isfinite(confidence.deviation) ? Json(confidence.deviation) : Json(nullptr)},
                {"unit", unit_on_rig(parameter.unit(), bench)},
@@ -90,7 +89,7 @@ std::string unit_on_rig(std::string unit, const bench::Bench& bench) {
   return unit;
 }
 
-bool at_bound(const FitParameter& parameter, double value) {
+bool at_bound(const Unknown& parameter, double value) {
   const double edge = 1e-3 * (parameter.upper - parameter.lower);
   if (parameter.lower > 0.0) return value <= 1.01 * parameter.lower || value >= 0.99 * parameter.upper;
   return value >= parameter.upper - edge || (parameter.lower < 0.0 && value <= parameter.lower + edge);
@@ -100,10 +99,10 @@ std::string deviation_text(const Confidence& confidence) {
   return std::isfinite(confidence.deviation) ? fmt::format("{:.2g}", confidence.deviation) : "?";
 }
 
-std::string reservation(const FitParameter& parameter, double value, const Confidence& confidence) {
+std::string reservation(const Unknown& parameter, double value, const Confidence& confidence) {
   if (at_bound(parameter, value)) return "at its range's edge";
   if (!confidence.told_only_with.empty())
-    return fmt::format("not told: other values move the same with another {}",
+    return fmt::format("not determined: other values move the same with another {}",
                        fmt::join(confidence.told_only_with, ", "));
   if (!std::isfinite(confidence.deviation)) return "these runs don't show it";
   if (!confidence.confounded_with.empty()) return "hard to tell from " + confidence.confounded_with;
@@ -111,7 +110,7 @@ std::string reservation(const FitParameter& parameter, double value, const Confi
 }
 
 bool take_inverse_dynamics(const InverseDynamics& found, const bench::Bench& bench, JointModel& start,
-                           std::vector<FitParameter>& unknowns) {
+                           Unknowns& unknowns) {
   const double viscous = found.viscous_Nm_s_per_rad.value, coulomb_Nm = found.coulomb_Nm.value;
   const std::pair<const char*, double> determined[] = {
       {"transmission.armature_kg_m2", std::max(0.0, found.armature_kg_m2.value)},
@@ -120,13 +119,13 @@ bool take_inverse_dynamics(const InverseDynamics& found, const bench::Bench& ben
       {"ripple.offset_Nm", found.offset_Nm.value},
   };
   for (const auto& [name, value] : determined) {
-    std::erase_if(unknowns, [name = name](const FitParameter& p) { return p.name == name; });
+    std::erase_if(unknowns, [name = name](const Unknown& p) { return p.name == name; });
     if (possible(found))
       set(start, name, value);
     else
-      unknowns.push_back(fit_parameter(name, bench));
+      unknowns.push_back(unknown(name, bench));
   }
-  if (unknowns.empty()) unknowns.push_back(fit_parameter("sensor.velocity_lag_s", bench));
+  if (unknowns.empty()) unknowns.push_back(unknown("sensor.velocity_lag_s", bench));
   return possible(found);
 }
 
@@ -167,7 +166,7 @@ work::Worth worth_of(const FitResults& results) {
   worth.add_if(!(after.mean_absolute_rad() < before.mean_absolute_rad()), work::Grade::kNoBetter,
                "the fit is no better than the model that it began with");
   for (std::size_t i = 0; i < results.confidence.size(); ++i) {
-    const FitParameter& p = results.problem->parameters()[i];
+    const Unknown& p = results.problem->parameters()[i];
     if (at_bound(p, value(results.fit.model, p.name)))
       worth.add(work::Grade::kOpen, p.name + " is at its range's edge");
     else if (results.confidence[i].told_only_with.empty() && !std::isfinite(results.confidence[i].deviation))
@@ -178,7 +177,7 @@ work::Worth worth_of(const FitResults& results) {
     if (!results.confidence[i].told_only_with.empty()) alike.insert(results.problem->parameters()[i].name);
   }
   worth.add_if(!alike.empty(), work::Grade::kOpen,
-               fmt::format("these runs don't tell {}: other values of them together move the joint the same",
+               fmt::format("these runs don't determine {}: other values of them together move the joint the same",
                            fmt::join(alike, ", ")));
   return worth;
 }
@@ -189,7 +188,7 @@ Json fit_json(const FitResults& results) {
                {"interrupted", results.fit.interrupted},       {"parameters", Json::object()}};
   add_to(json, worth_of(results));
   for (std::size_t i = 0; i < results.confidence.size(); ++i) {
-    const FitParameter& parameter = results.problem->parameters()[i];
+    const Unknown& parameter = results.problem->parameters()[i];
     json["parameters"][parameter.name] =
         parameter_json(*results.bench, parameter, value(results.fit.model, parameter.name), results.confidence[i]);
   }

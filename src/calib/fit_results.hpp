@@ -45,17 +45,17 @@ struct FitResults {
 };
 
 /// Moves the parameters that inverse dynamics determines from the unknowns into the start model: rollouts cannot
-/// separate inertia from a lag of the drive's velocity, the recorded drive can. If no unknown is left, that lag becomes
-/// one. A negative estimate within its uncertainty counts as 0. A significantly negative one is impossible: then
-/// nothing is taken, rollouts fit all parameters, and the result is false.
+/// separate inertia from a lag of the drive's velocity, the recorded drive output can. If no unknown is left, that lag
+/// becomes one. A negative estimate within its uncertainty counts as 0. A significantly negative one is impossible:
+/// then nothing is taken, rollouts fit all parameters, and the result is false.
 bool take_inverse_dynamics(const InverseDynamics& found, const bench::Bench& bench, JointModel& start,
-                           std::vector<FitParameter>& unknowns);
+                           Unknowns& unknowns);
 
 Assessment assess(const std::string& filter, const std::vector<SingleJoint>& runs, const JointModel& before,
                   const JointModel& after, unsigned threads);
 
 /// Interrupted; off its data, where these have faults or the model misses them by kExplainedShare of what a joint that
-/// stands still misses; no better than the start; open, where a parameter can't be told or is at its range's edge.
+/// stands still misses; no better than the start; open, where a parameter isn't determined or is at its range's edge.
 work::Worth worth_of(const FitResults& results);
 
 nlohmann::ordered_json fit_json(const FitResults& results);
@@ -74,9 +74,9 @@ std::string unit_on_rig(std::string unit, const bench::Bench& bench);
 std::string deviation_text(const Confidence& confidence);
 
 /// A warning about a fitted parameter, or "".
-std::string reservation(const FitParameter& parameter, double value, const Confidence& confidence);
+std::string reservation(const Unknown& parameter, double value, const Confidence& confidence);
 
 /// True if the value lies at an edge of its range: the optimum may be outside.
-bool at_bound(const FitParameter& parameter, double value);
+bool at_bound(const Unknown& parameter, double value);
 
 }  // namespace pmg::calib

@@ -6,10 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
-#include <numeric>
-#include <random>
 
-#include "calib/gauss_newton.hpp"
 #include "work/parallel.hpp"
 
 namespace pmg::calib {
@@ -20,21 +17,6 @@ double seconds(const std::vector<SingleJoint>& runs) {
   double sum_s = 0.0;
   for (const SingleJoint& run : runs) sum_s += static_cast<double>(run.steps()) * run.step_s();
   return sum_s;
-}
-
-/// Latin hypercube: each row of each dimension holds one point.
-std::vector<std::vector<double>> spread_points(std::size_t count, std::size_t dimensions, unsigned seed) {
-  std::mt19937 random(seed);
-  std::vector<std::vector<double>> points(count, std::vector<double>(dimensions));
-  std::vector<std::size_t> rows(count);
-  for (std::size_t d = 0; d < dimensions; ++d) {
-    std::iota(rows.begin(), rows.end(), std::size_t{0});
-    for (std::size_t i = count; i > 1; --i) std::swap(rows[i - 1], rows[random() % i]);
-    for (std::size_t i = 0; i < count; ++i) {
-      points[i][d] = (static_cast<double>(rows[i]) + 0.5) / static_cast<double>(count);
-    }
-  }
-  return points;
 }
 
 /// One fit: screening => searches from several starts => polish.
@@ -68,13 +50,14 @@ class MotorFitRun {
     std::vector<std::vector<double>> points =
         spread_points(options_.screened_per_dimension * all_.dimensions(), all_.dimensions(), options_.seed);
     points.push_back(all_.point_of(all_.start()));
-    std::vector<Found> found(points.size());
+    const auto count = static_cast<double>(points.size());
     const Loss loss = loss_of(few_, 1);
-    work::for_each_in_parallel(points.size(), options_.threads, [&](std::size_t i) {
-      found[i] = {points[i], stopped_ ? 1e9 : loss(points[i]), 1};
-      if (i % 16 == 0) report(0.1 * static_cast<double>(i) / static_cast<double>(points.size()), "looking for starts");
-    });
-    sort(found);
+    std::atomic<int> looks{0};
+    const auto looked = [&](const std::vector<double>& point) {
+      if (const int look = looks++; look % 16 == 0) report(0.1 * look / count, "looking for starts");
+      return stopped_ ? 1e9 : loss(point);
+    };
+    std::vector<Found> found = screened(looked, std::move(points), options_.threads);
     found.resize(std::min<std::size_t>(found.size(), std::max(1U, options_.starts)));
     return found;
   }
@@ -145,14 +128,24 @@ class MotorFitRun {
     return best;
   }
 
-  /// Gauss-Newton steps along a valley in which a search stopped.
+  /// Gauss-Newton steps along a valley in which a search stopped: if the load is light relative to the rotor, a common
+  /// factor on all torques hardly changes the rollouts. A search of one parameter at a time stops in this valley; a
+  /// step in all parameters follows it. Never worse than the rescaled start.
   Found followed(const Found& start, const Loss& loss) {
     if (options_.newton_steps == 0) return start;
-    const std::vector<double> point = rescaled(start.point, loss);
-    const Found at = gauss_newton(all_, {point, loss(point), 1}, options_.newton_steps, options_.threads, stopping());
-    evaluations_ += at.evaluations;
-    simulated_s_ += at.evaluations * seconds(all_.runs());
-    return at;
+    const std::vector<double> from = rescaled(start.point, loss);
+    const Found before{from, loss(from), 1};
+    const Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(from.data(), std::ssize(from));
+    const fitting::Minimum minimum = fitting::gauss_newton(
+        all_.least_squares(options_.threads), x,
+        // Finite-difference slopes hold for about a tenth of the range: the longest step.
+        {.most_iterations = options_.newton_steps, .relative_tolerance = 1e-6, .most_tries = 8, .longest_step = 0.1},
+        stopping());
+    Found after{{minimum.x.begin(), minimum.x.end()}, 0.0, minimum.evaluations + 1};
+    after.loss = all_.loss(after.point, options_.threads);
+    evaluations_ += after.evaluations;
+    simulated_s_ += after.evaluations * seconds(all_.runs());
+    return after.loss < before.loss ? after : before;
   }
 
   /// Global searches need more evaluations than local ones.
@@ -185,10 +178,6 @@ class MotorFitRun {
     const std::lock_guard lock(reporting_);
     share_ = std::max(share_, share);
     if (!progress_(share_, doing)) stopped_ = true;
-  }
-
-  static void sort(std::vector<Found>& found) {
-    std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.loss < b.loss; });
   }
 
   const FitProblem& all_;

@@ -16,7 +16,7 @@ struct FitOptions {
   unsigned screened_per_dimension = 24;  ///< points at which the loss is evaluated to find the starts
   std::size_t runs_while_searching = 16;
   int evaluations_per_dimension = 60;  ///< at most, a start and a polish; CRS2 and CMA-ES take five times that
-  int newton_steps = 0;                ///< at most, on all runs before the polish (gauss_newton.hpp); 0: none
+  int newton_steps = 0;                ///< at most, on all runs before the polish; 0: none
   unsigned threads = 1;
   unsigned seed = 1;
 };

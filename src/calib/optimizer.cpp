@@ -2,14 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlopt.hpp>
+#include <numeric>
+#include <random>
 #include <stdexcept>
+
+#include "work/parallel.hpp"
 
 namespace pmg::calib {
 
 namespace {
-
-struct Interruption {};
 
 nlopt::algorithm nlopt_algorithm(Method method) {
   if (method == Method::kBobyqa) return nlopt::LN_BOBYQA;
@@ -68,5 +71,30 @@ Found search(Method method, const Loss& loss, const std::vector<double>& start, 
   }
   return best;
 }
+
+std::vector<std::vector<double>> spread_points(std::size_t count, std::size_t dimensions, unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<std::vector<double>> points(count, std::vector<double>(dimensions));
+  std::vector<std::size_t> rows(count);
+  for (std::size_t d = 0; d < dimensions; ++d) {
+    std::iota(rows.begin(), rows.end(), std::size_t{0});
+    for (std::size_t i = count; i > 1; --i) std::swap(rows[i - 1], rows[random() % i]);
+    for (std::size_t i = 0; i < count; ++i)
+      points[i][d] = (static_cast<double>(rows[i]) + 0.5) / static_cast<double>(count);
+  }
+  return points;
+}
+
+std::vector<Found> screened(const Loss& loss, std::vector<std::vector<double>> points, unsigned threads) {
+  std::vector<Found> found(points.size());
+  work::for_each_in_parallel(points.size(), threads, [&](std::size_t i) {
+    const double value = loss(points[i]);
+    found[i] = {std::move(points[i]), value, 1};
+  });
+  sort(found);
+  return found;
+}
+
+void sort(std::vector<Found>& found) { std::ranges::stable_sort(found, {}, &Found::loss); }
 
 }  // namespace pmg::calib

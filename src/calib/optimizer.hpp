@@ -34,6 +34,16 @@ using Loss = std::function<double(const std::vector<double>& point)>;
 Found search(Method method, const Loss& loss, const std::vector<double>& start, const SearchOptions& options,
              const work::Progress& progress = {});
 
+/// (number of points, dimensions, seed) => (a Latin hypercube: each of `count` rows of each dimension holds one point).
+std::vector<std::vector<double>> spread_points(std::size_t count, std::size_t dimensions, unsigned seed);
+
+/// (loss, points) => (the points with their losses, the lowest first; of equal ones in the given order). Does not
+/// depend on the number of threads.
+std::vector<Found> screened(const Loss& loss, std::vector<std::vector<double>> points, unsigned threads);
+
+/// Lowest loss first.
+void sort(std::vector<Found>& found);
+
 /// CMA-ES alone, in a translation unit of its own: pagmo's templates take long to compile.
 Found search_cmaes(const Loss& loss, const std::vector<double>& start, const SearchOptions& options);
 

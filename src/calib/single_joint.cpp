@@ -6,8 +6,8 @@
 #include <numbers>
 #include <numeric>
 
-#include "calib/fit_problem.hpp"
 #include "calib/simulated.hpp"
+#include "calib/unknown.hpp"
 #include "model/constants.hpp"
 
 namespace pmg::calib {

@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "data_faults/column_checks.hpp"
+#include "data_faults/commanded_torque_check.hpp"
 #include "data_faults/position_checks.hpp"
 #include "data_faults/run_checks.hpp"
 #include "data_faults/shared_checks.hpp"
 #include "data_faults/shift_checks.hpp"
-#include "data_faults/told_torque_check.hpp"
 #include "data_faults/trajectory_checks.hpp"
 
 namespace pmg::data_faults {
@@ -39,7 +39,7 @@ void take_what_the_model_tells(Examined& runs, std::vector<DataFault>& into) {
   if (take(common_shift(runs), runs, into)) runs.fit();
   while (static_cast<double>(into.size()) < runs.options().most_faults) {
     // What many runs share before what one run shows: a gain that acts by another factor makes all its rows look wrong.
-    if (!take(clearest_position_fault(runs), runs, into) && !take(told_torque_fault(runs), runs, into) &&
+    if (!take(clearest_position_fault(runs), runs, into) && !take(commanded_torque_fault(runs), runs, into) &&
         !take(gain_fault(runs), runs, into) && !take(mass_fault(runs), runs, into) &&
         !take(clearest_run_fault(runs), runs, into)) {
       return;

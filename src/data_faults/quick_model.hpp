@@ -12,11 +12,11 @@ namespace pmg::data_faults {
 
 /// Factors on numbers of bench.yaml and runs.csv, one for each run.
 struct RunFactors {
-  double kp = 1.0, kd = 1.0, load = 1.0, told_torque = 1.0;
+  double kp = 1.0, kd = 1.0, load = 1.0, commanded_torque = 1.0;
 };
 
 /// One unknown factor that some runs share: of a gain, of a load (inertia and gravity), or of the torque that the drive
-/// is told.
+/// is commanded.
 struct SharedFactor {
   double RunFactors::*of = &RunFactors::kp;
   std::vector<std::size_t> runs;
@@ -66,12 +66,10 @@ class QuickModel {
   std::vector<double> log_errors(const std::vector<calib::SingleJoint>& joints, const calib::JointModel& model) const;
 
  private:
-  std::vector<effects::Unknown> unknowns(const std::vector<calib::SingleJoint>& runs,
-                                         const std::vector<std::string>& extra) const;
-  calib::JointModel screened(const std::vector<calib::SingleJoint>& runs,
-                             const std::vector<effects::Unknown>& unknowns) const;
-  QuickFit minimised(const std::vector<calib::SingleJoint>& runs, const std::vector<effects::Unknown>& unknowns,
-                     const QuickFit& from, const std::vector<SharedFactor>& shared, int most_iterations) const;
+  calib::Unknowns unknowns(const std::vector<calib::SingleJoint>& runs, const std::vector<std::string>& extra) const;
+  calib::JointModel screened(const std::vector<calib::SingleJoint>& runs, const calib::Unknowns& unknowns) const;
+  QuickFit minimised(const std::vector<calib::SingleJoint>& runs, const calib::Unknowns& unknowns, const QuickFit& from,
+                     const std::vector<SharedFactor>& shared, int most_iterations) const;
   QuickFit with_rate_limit(const std::vector<calib::SingleJoint>& runs, const QuickFit& fit) const;
   QuickFit at(const std::vector<calib::SingleJoint>& runs, QuickFit fit) const;
 

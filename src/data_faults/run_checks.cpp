@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "data_faults/column_checks.hpp"
+#include "data_faults/commanded_torque_check.hpp"
 #include "data_faults/position_checks.hpp"
 #include "data_faults/row_checks.hpp"
 #include "data_faults/shift_checks.hpp"
-#include "data_faults/told_torque_check.hpp"
 #include "data_faults/trajectory_checks.hpp"
 #include "fitting/statistics.hpp"
 
@@ -23,9 +23,9 @@ constexpr std::size_t kFewestRuns = 3;  // two runs that differ don't say which 
 
 /// The column of the positions that is at fault in one run. Another run of the trajectory had the same commands, if the
 /// commands are right.
-Column turned_column(const Examined& e, std::size_t run, double factor, bool& told) {
+Column turned_column(const Examined& e, std::size_t run, double factor, bool& sure) {
   const bench::BenchRun& suspect = e.runs()[run];
-  told = true;
+  sure = true;
   for (std::size_t other = 0; other < e.runs().size(); ++other) {
     if (other == run || e.runs()[other].trajectory != suspect.trajectory) continue;
     if (same_commands(suspect, e.runs()[other], 1.0, e.options())) return Column::kPosition;
@@ -35,7 +35,7 @@ Column turned_column(const Examined& e, std::size_t run, double factor, bool& to
   if (speed.known && std::abs(speed.correlation) > e.options().sure_correlation) {
     return speed.factor * factor > 0.0 ? Column::kPosition : Column::kPositionCommand;
   }
-  told = false;
+  sure = false;
   return Column::kPosition;
 }
 
@@ -45,14 +45,14 @@ void try_position(const Examined& e, std::size_t run, Column column, const std::
                   std::vector<Explained>& into) {
   const std::string file = e.runs()[run].file;
   bench::Correction fix{.files = {file}, .columns = {column}, .factor = factor};
-  bool told = true;
-  if (unit.empty()) fix.columns = {turned_column(e, run, -1.0, told)};
+  bool sure = true;
+  if (unit.empty()) fix.columns = {turned_column(e, run, -1.0, sure)};
   // In another unit the readings are missed by another error: a share of their size counts.
   const double scale = column == Column::kPosition && !unit.empty() ? -std::log(factor) : 0.0;
   const double before = e.log_error()[run] - scale, after = log_error_with(e, run, fix);
   const std::string name = bench::column_name(fix.columns.front(), e.linear());
   DataFault fault{.kind = unit.empty() ? Kind::kSign : Kind::kUnit, .where = place_of(name, {file}), .correction = {}};
-  if (!told) fault.where += fmt::format(" (or {})", bench::column_name(Column::kPositionCommand, e.linear()));
+  if (!sure) fault.where += fmt::format(" (or {})", bench::column_name(Column::kPositionCommand, e.linear()));
   fault.correction = unit.empty() ? fmt::format("turn the sign of {} in {}", name, file)
                                   : fmt::format("{} of {} is in {}: multiply it by {:.6g}", name, file, unit, factor);
   const Follows by = follows(e, e.runs()[run]);
@@ -91,7 +91,7 @@ std::vector<DataFault> clearest_run_fault(const Examined& e) {
   if (e.runs().size() < kFewestRuns) return {};
   std::vector<Explained> all = row_explanations(e);
   try_shifts(e, all);
-  for (std::size_t run = 0; run < e.runs().size(); ++run) try_told_torque(e, run, all);
+  for (std::size_t run = 0; run < e.runs().size(); ++run) try_commanded_torque(e, run, all);
   return clearest(all);
 }
 

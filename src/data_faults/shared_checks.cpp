@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-#include "calib/fit_problem.hpp"
+#include "calib/unknown.hpp"
 #include "data_faults/column_checks.hpp"
 #include "fitting/statistics.hpp"
 

@@ -8,8 +8,8 @@
 
 #include "bench/noise_floor.hpp"
 #include "data_faults/column_checks.hpp"
+#include "data_faults/commanded_torque_check.hpp"
 #include "data_faults/row_checks.hpp"
-#include "data_faults/told_torque_check.hpp"
 #include "fitting/statistics.hpp"
 
 namespace pmg::data_faults {
@@ -21,7 +21,7 @@ using bench::Column;
 /// What the readings answer to.
 std::string command_name(const Examined& e) {
   const bool torque = e.bench().law == bench::DriveLaw::kTorque;
-  return bench::column_name(torque ? told_torque(e) : Column::kPositionCommand, e.linear());
+  return bench::column_name(torque ? commanded_torque(e) : Column::kPositionCommand, e.linear());
 }
 
 /// Lag of the readings behind the model [s], and ln of the error there.

@@ -38,14 +38,10 @@ BaseModel base_model(const bench::Bench& bench, const std::optional<model::Actua
   BaseModel base;
   base.model.actuator = given.value_or(bench.known);
   std::vector<std::string> free = given ? bench.unknown : calib::basic_parameters(bench);
-  if (!given) {  // every joint has friction
-    for (const char* name : {"friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad"}) {
-      if (!effects::contains(free, name)) free.emplace_back(name);
-    }
-  }
   if (!given) {
-    std::vector<calib::FitParameter> parameters;
-    for (const std::string& name : free) parameters.push_back(calib::fit_parameter(name, bench));
+    calib::add_missing(free, {"friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad"});  // every joint has friction
+    calib::Unknowns parameters;
+    for (const std::string& name : free) parameters.push_back(calib::unknown(name, bench));
     const calib::FitOptions search{.starts = 4, .runs_while_searching = 8, .threads = threads};
     const calib::FitProblem problem(parameters, base.model, fit.runs());
     base.model = calib::fit(problem.thinned(12), search).model;
@@ -57,10 +53,10 @@ BaseModel base_model(const bench::Bench& bench, const std::optional<model::Actua
     if (effects::contains(free, name)) continue;
     const double value = calib::value(base.model, name);
     if (value == 0.0) continue;
-    effects::Unknown u = effects::unknown(name, bench, base.scale);
+    calib::Unknown u = effects::unknown(name, bench, base.scale);
     u.lower = value - share * std::abs(value);
     u.upper = value + share * std::abs(value);
-    u.logarithmic = false;
+    u.scale = calib::Scale::kLinear;
     u.typical = std::abs(value);
     u.expected = value;
     u.deviation = options.deviation_of_tolerance * share * std::abs(value);

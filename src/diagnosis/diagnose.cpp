@@ -50,20 +50,21 @@ class JointDiagnosisRun {
         direct_evidence(checks_, base.model.actuator, diagnosis_.noise_floor.rms_rad, base.scale.speed_rad_s, by_), by_,
         {.report = [this](double, std::string_view doing) { report(share_ + 0.02 * (0.9 - share_), doing); },
          .interrupted = progress_.interrupted});
-    for (const effects::Unknown& u : search.base_model().unknowns) diagnosis_.base_parameters.push_back(u.name);
+    for (const calib::Unknown& u : search.base_model().unknowns) diagnosis_.base_parameters.push_back(u.name);
     auto [chosen, final_fit] = final_model(search, all);
     const bool differ_at_end = tell_assemblies(fitted, scored, final_fit, base, true);
-    const effects::NestedFit told(fitted, options_.threads);
+    const effects::NestedFit of_assemblies(fitted, options_.threads);
     if (differ_at_end)
       final_fit = diagnosis_.assemblies.fitted;
     else if (differ)
-      final_fit = told.fit(final_fit.model, final_fit.unknowns, 8, nullptr, final_fit.prior_weight);
+      final_fit = of_assemblies.fit(final_fit.model, final_fit.unknowns, 8, nullptr, final_fit.prior_weight);
     if (differ || differ_at_end) {
-      told.linearise(final_fit);
-      count_step(told, final_fit);
+      of_assemblies.linearise(final_fit);
+      count_step(of_assemblies, final_fit);
     }
-    rest_squares_ = differ || differ_at_end ? usual_rest(told, final_fit, std::pow(diagnosis_.noise_floor.rms_rad, 2))
-                                            : search.usual_rest(chosen);
+    rest_squares_ = differ || differ_at_end
+                        ? usual_rest(of_assemblies, final_fit, std::pow(diagnosis_.noise_floor.rms_rad, 2))
+                        : search.usual_rest(chosen);
     if (runs != nullptr) *runs = {fitted, scored, checks_, {}};
     diagnosis_.before = search.base().fitted.model;
     if (all.runs().size() > fit.runs().size())
@@ -71,7 +72,7 @@ class JointDiagnosisRun {
     diagnosis_.after = final_fit.model;
     diagnosis_.step_error_after = calib::integration_error(bench_, fit.runs(), diagnosis_.after, options_.threads);
     count_integration_error(rest_squares_, fit, base);
-    score(told, scored);
+    score(of_assemblies, scored);
     std::vector<evidence::Signature> expected;
     if (!chosen.effects.empty() || runs != nullptr) {
       expected =
@@ -80,7 +81,7 @@ class JointDiagnosisRun {
     if (runs != nullptr) runs->expected = expected;
     explanation_ = explain(search, chosen,
                            {.searched = fit,
-                            .all = told,
+                            .all = of_assemblies,
                             .judged = *judged_,
                             .fitted = final_fit,
                             .checks = checks_,
@@ -95,9 +96,9 @@ class JointDiagnosisRun {
     }
     diagnosis_.rejected = explanation_.rejected;
     leave_out_what_only_differs(diagnosis_, chosen.forms);
-    conclude(search, told, fit);
+    conclude(search, of_assemblies, fit);
     if (diagnosis_.verdict == evidence::Verdict::kUnexplained)
-      extend_unexplained(search, chosen, searched(fitted), told);
+      extend_unexplained(search, chosen, searched(fitted), of_assemblies);
     return diagnosis_;
   }
 
@@ -240,7 +241,7 @@ class JointDiagnosisRun {
     unite(asked.same_here, diagnosis_.causes);
   }
 
-  void conclude(const EffectSearch& search, const effects::NestedFit& told, const effects::NestedFit& fit) {
+  void conclude(const EffectSearch& search, const effects::NestedFit& of_assemblies, const effects::NestedFit& fit) {
     const double noise = std::max(1e-300, std::pow(diagnosis_.noise_floor.rms_rad, 2));
     const double rest = rest_squares_, beginning = search.usual_rest(search.base());
     diagnosis_.before_over_noise = std::sqrt(1.0 + beginning / noise);
@@ -248,7 +249,7 @@ class JointDiagnosisRun {
     const bool remains = rest > (by_.remains_of_noise - 1.0) * noise && rest > by_.remains_of_beginning * beginning;
     if (remains) {
       diagnosis_.depends_on = significant_dependences(
-          residual_samples(bench_, told.runs(), diagnosis_.after, options_.threads, by_.signatures.step));
+          residual_samples(bench_, of_assemblies.runs(), diagnosis_.after, options_.threads, by_.signatures.step));
     }
     ask_for_more(fit);
     const bool alike = std::any_of(diagnosis_.causes.begin(), diagnosis_.causes.end(),

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <set>
 
-#include "calib/fit_problem.hpp"
+#include "calib/unknown.hpp"
 #include "diagnosis/effect_search.hpp"
 #include "effects/catalogue.hpp"
 #include "effects/pair_screen.hpp"

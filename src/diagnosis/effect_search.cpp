@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "calib/fit_problem.hpp"
+#include "calib/unknown.hpp"
 #include "effects/catalogue.hpp"
 
 namespace pmg::diagnosis {
@@ -108,12 +108,12 @@ const Extension& EffectSearch::refit_without(const Extension& extension, const s
 Extension EffectSearch::refit_with_priors(const Extension& extension) const {
   const effects::NestedModel& loose = extension.fitted;
   const bool known = std::any_of(loose.unknowns.begin(), loose.unknowns.end(),
-                                 [](const effects::Unknown& u) { return u.deviation > 0.0; });
+                                 [](const calib::Unknown& u) { return u.deviation > 0.0; });
   if (!known) return extension;
   const double weight = prior_weight(loose);
   calib::JointModel given = loose.model;
-  std::vector<effects::Unknown> effects_only;
-  for (const effects::Unknown& u : loose.unknowns) {
+  calib::Unknowns effects_only;
+  for (const calib::Unknown& u : loose.unknowns) {
     if (u.deviation > 0.0)
       calib::set(given, u.name, u.expected);
     else

@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "calib/fit_problem.hpp"
+#include "calib/unknown.hpp"
 #include "effects/catalogue.hpp"
 #include "effects/folds.hpp"
 #include "effects/intervals.hpp"
@@ -126,7 +126,7 @@ class Explaining {
   }
 
   bool is_rival(const Trial& other, const effects::SeenSeparation& apart) const {
-    for (const effects::Unknown& u : other.extension.fitted.unknowns) {
+    for (const calib::Unknown& u : other.extension.fitted.unknowns) {
       const bool stiffest = u.name == "transmission.stiffness_Nm_per_rad" &&
                             calib::value(other.extension.fitted.model, u.name) > 0.99 * u.upper;
       if (stiffest) return false;  // at the upper bound of stiffness the shaft is rigid: no rival
@@ -140,7 +140,7 @@ class Explaining {
 
   evidence::ParameterEstimate estimate(const std::string& parameter) const {
     for (std::size_t i = 0; i < intervals_.size(); ++i) {
-      const effects::Unknown& u = from_.fitted.unknowns[i];
+      const calib::Unknown& u = from_.fitted.unknowns[i];
       if (u.name == parameter) return {parameter, intervals_[i], u.unit()};
     }
     const double value = calib::value(from_.fitted.model, parameter);
@@ -153,13 +153,13 @@ class Explaining {
   }
 
   void reject() {
-    std::set<std::string> told(chosen_.effects.begin(), chosen_.effects.end());
-    for (const Cause& cause : found_.causes) told.insert(cause.or_instead.begin(), cause.or_instead.end());
+    std::set<std::string> listed(chosen_.effects.begin(), chosen_.effects.end());
+    for (const Cause& cause : found_.causes) listed.insert(cause.or_instead.begin(), cause.or_instead.end());
     for (const auto& [effect, why] : search_.left_out()) {
-      if (told.insert(effect).second) found_.rejected.push_back({effect, why, LookedAt::kFit});
+      if (listed.insert(effect).second) found_.rejected.push_back({effect, why, LookedAt::kFit});
     }
     for (const effects::Effect& one : effects::catalogue()) {
-      if (!told.contains(one.name)) found_.rejected.push_back(rejected(one.name));
+      if (!listed.contains(one.name)) found_.rejected.push_back(rejected(one.name));
     }
   }
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/fit_problem.hpp"
+#include "calib/unknown.hpp"
 #include "diagnosis/effect_search.hpp"
 #include "effects/catalogue.hpp"
 #include "effects/intervals.hpp"
@@ -16,12 +16,12 @@ namespace {
 
 /// A strength that stopped at a bound of its range other than neutral, or null. The order of a wave counts too: with
 /// no more than one period over the range of motion it is any smooth torque's proxy.
-const effects::Unknown* at_edge(const std::string& effect, const effects::Forms& forms,
-                                const effects::NestedModel& fitted, const calib::JointModel& neutral) {
+const calib::Unknown* at_edge(const std::string& effect, const effects::Forms& forms,
+                              const effects::NestedModel& fitted, const calib::JointModel& neutral) {
   const std::vector<std::string> strengths = effects::strengths(effect, forms);
   const std::vector<std::string>& parameters = effects::form_of(effect, forms).parameters;
   for (std::size_t i = 0; i < fitted.unknowns.size(); ++i) {
-    const effects::Unknown& u = fitted.unknowns[i];
+    const calib::Unknown& u = fitted.unknowns[i];
     const bool order = effects::is_order(u.name) && effects::contains(parameters, u.name);
     if (!order && !effects::contains(strengths, u.name)) continue;
     const double x = u.value(fitted.coordinates[static_cast<Eigen::Index>(i)]), edge = 1e-6 * (u.upper - u.lower);
@@ -36,7 +36,7 @@ std::string maybe_neutral(const std::vector<std::string>& strengths, const effec
                           const calib::JointModel& neutral, const std::vector<evidence::Interval>& intervals) {
   std::string why;
   for (std::size_t i = 0; i < intervals.size(); ++i) {
-    const effects::Unknown& u = fitted.unknowns[i];
+    const calib::Unknown& u = fitted.unknowns[i];
     if (!effects::contains(strengths, u.name)) continue;
     const evidence::Interval& x = intervals[i];
     const double none = std::clamp(calib::value(neutral, u.name), u.lower, u.upper);
@@ -123,7 +123,7 @@ std::string EffectSearch::doubt(const Trial& trial) const {
 
 std::string EffectSearch::unsure(const std::string& effect, const effects::Forms& forms,
                                  const effects::NestedModel& fitted, const std::vector<fitting::Fold>* folds) const {
-  if (const effects::Unknown* u = at_edge(effect, forms, fitted, base_.model))
+  if (const calib::Unknown* u = at_edge(effect, forms, fitted, base_.model))
     return fmt::format("{} ends at the edge of its range, {:.3g} to {:.3g} {}", u->name, u->lower, u->upper, u->unit());
   if (effects::fades_unseen(effect, forms, fitted.model, base_.scale.speed_rad_s))
     return "less than half of its friction fades at the speeds of these runs: they can't tell it from Coulomb friction";

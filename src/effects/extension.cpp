@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "calib/fit_problem.hpp"
+#include "calib/unknown.hpp"
 #include "effects/period.hpp"
 
 namespace pmg::effects {
@@ -31,18 +31,11 @@ std::size_t Extension::numbers() const {
   return count;
 }
 
-std::vector<Unknown> ExtensionFits::unknowns(const std::vector<std::string>& effects, const Forms& forms) const {
-  std::vector<Unknown> found = base_.unknowns;
+calib::Unknowns ExtensionFits::unknowns(const std::vector<std::string>& effects, const Forms& forms) const {
+  calib::Unknowns found = base_.unknowns;
   for (const std::string& name : effects) {
     for (const std::string& parameter : form_of(name, forms).parameters) {
-      if (is_jagged(parameter)) continue;
-      const Unknown full = unknown(parameter, bench_, base_.scale);
-      const auto there =
-          std::find_if(found.begin(), found.end(), [&](const Unknown& u) { return u.name == parameter; });
-      if (there == found.end())
-        found.push_back(full);
-      else
-        *there = full;
+      if (!is_jagged(parameter)) calib::put(found, unknown(parameter, bench_, base_.scale));
     }
   }
   return found;
@@ -64,7 +57,7 @@ calib::JointModel ExtensionFits::without(calib::JointModel model, const std::str
 
 Extension ExtensionFits::fitted(const std::vector<std::string>& effects, const Forms& forms,
                                 const calib::JointModel& start, int most_iterations) const {
-  const std::vector<Unknown> free = unknowns(effects, forms);
+  const calib::Unknowns free = unknowns(effects, forms);
   Extension extension{effects, fit_.fit(start, free, most_iterations), {}, forms, {}};
   for (const std::string& name : effects) {
     for (const std::string& parameter : form_of(name, forms).parameters) {

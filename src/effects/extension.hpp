@@ -16,7 +16,7 @@ namespace pmg::effects {
 /// parameters known from a calibration or a data sheet within their tolerance.
 struct BaseModel {
   calib::JointModel model;
-  std::vector<Unknown> unknowns;
+  calib::Unknowns unknowns;
   BenchScale scale;
 };
 
@@ -51,7 +51,7 @@ class ExtensionFits {
       : bench_(bench), fit_(fit), base_(base), compare_(compare) {}
 
   /// The unknowns of the base model, then those of the effects' forms over their whole range.
-  std::vector<Unknown> unknowns(const std::vector<std::string>& effects, const Forms& forms) const;
+  calib::Unknowns unknowns(const std::vector<std::string>& effects, const Forms& forms) const;
   /// The model with the parameters of all forms of the effect as in the base model, except those that the form of a
   /// kept effect shares.
   calib::JointModel without(calib::JointModel model, const std::string& effect, const std::vector<std::string>& kept,

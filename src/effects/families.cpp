@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "calib/fit_problem.hpp"
+#include "calib/unknown.hpp"
 
 namespace pmg::effects {
 

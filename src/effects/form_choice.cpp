@@ -4,7 +4,7 @@
 #include <map>
 #include <optional>
 
-#include "calib/fit_problem.hpp"
+#include "calib/unknown.hpp"
 #include "effects/strengths.hpp"
 
 namespace pmg::effects {

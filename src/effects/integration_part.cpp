@@ -20,7 +20,7 @@ fitting::Residuals integration_residuals(const bench::Bench& bench, const Nested
 }
 
 double integration_part_rms(const bench::Bench& bench, const NestedFit& fit, const calib::JointModel& model,
-                            const std::vector<Unknown>& unknowns) {
+                            const calib::Unknowns& unknowns) {
   const NestedModel at = fit.fit(model, unknowns, 0);
   const fitting::Residuals residuals = fit.residuals(at.model);
   fitting::Residuals error = integration_residuals(bench, fit, at.model, residuals);

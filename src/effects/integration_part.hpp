@@ -11,7 +11,7 @@ namespace pmg::effects {
 /// c = r.e' / |e'|^2, 0 <= c <= 1. Infinite where the model can't be simulated with half the step. Costs two rollouts
 /// of every run, one of them with half the step, and one for each parameter.
 double integration_part_rms(const bench::Bench& bench, const NestedFit& fit, const calib::JointModel& model,
-                            const std::vector<Unknown>& unknowns);
+                            const calib::Unknowns& unknowns);
 
 /// (model, its residuals) => (what the integrator's step h adds to them; its error is of first order: 2 (r(h) - r(h /
 /// 2))). Empty where the model can't be simulated. Costs a rollout of every run with half the step.

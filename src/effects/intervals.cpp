@@ -20,7 +20,7 @@ constexpr double kDamping = 1e-6;  // of a step from a minimum
 std::vector<Eigen::Index> seen_inside(const NestedModel& model, const Eigen::MatrixXd& information) {
   std::vector<Eigen::Index> seen;
   for (Eigen::Index i = 0; i < model.coordinates.size(); ++i) {
-    const Unknown& u = model.unknowns[static_cast<std::size_t>(i)];
+    const calib::Unknown& u = model.unknowns[static_cast<std::size_t>(i)];
     const double value = u.value(model.coordinates[i]), edge = 1e-6 * (u.upper - u.lower);
     const bool inside = value > u.lower + edge && value < u.upper - edge;
     if (inside && information(i, i) > fitting::kUnseen_rad2) seen.push_back(i);
@@ -57,7 +57,7 @@ Eigen::VectorXd coordinate_deviations(const NestedModel& model, const std::vecto
   for (Eigen::Index i = 0; i < count; ++i) {
     const bool fitted = std::find(seen.begin(), seen.end(), i) != seen.end();
     if (fitted || !(information(i, i) > fitting::kUnseen_rad2)) continue;
-    const Unknown& u = model.unknowns[static_cast<std::size_t>(i)];
+    const calib::Unknown& u = model.unknowns[static_cast<std::size_t>(i)];
     const double range = u.coordinate(u.upper) - u.coordinate(u.lower);
     if (u.upper - u.lower > options.widest_tolerance * u.upper)
       continue;  // an effect's parameter at its bound, not one known to a tolerance
@@ -80,7 +80,7 @@ std::vector<evidence::Interval> parameter_intervals(const NestedModel& model, co
   const Eigen::VectorXd widths = student_widths(model, information);
   std::vector<evidence::Interval> found;
   for (Eigen::Index i = 0; i < model.coordinates.size(); ++i) {
-    const Unknown& u = model.unknowns[static_cast<std::size_t>(i)];
+    const calib::Unknown& u = model.unknowns[static_cast<std::size_t>(i)];
     const double x = model.coordinates[i], value = u.value(x);
     if (!(information(i, i) > fitting::kUnseen_rad2)) {
       found.push_back({value, u.lower, u.upper});
@@ -106,7 +106,7 @@ NestedModel with_wide_differences(const NestedFit& fit, NestedModel model, const
     bool wider = false;
     for (std::size_t i = 0; i < model.unknowns.size(); ++i) {
       const fitting::Coordinate& range = model.ranges[i];
-      const Unknown& u = model.unknowns[i];
+      const calib::Unknown& u = model.unknowns[i];
       const auto place = static_cast<Eigen::Index>(i);
       // Jumps make a number look surer than it is; none is surer than its form.
       const double value = u.value(model.coordinates[place]);

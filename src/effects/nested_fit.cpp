@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "calib/fit_problem.hpp"
-
 namespace pmg::effects {
 
 namespace {
@@ -15,24 +13,16 @@ constexpr int kMostSecants = 3;  // later ones gain little: rollouts with dry fr
 
 }  // namespace
 
-calib::JointModel model_at(const NestedModel& model, const Eigen::VectorXd& coordinates) {
-  calib::JointModel changed = model.model;
-  for (std::size_t i = 0; i < model.unknowns.size(); ++i) {
-    const Unknown& u = model.unknowns[i];
-    calib::set(changed, u.name, u.value(coordinates[static_cast<Eigen::Index>(i)]));
-  }
-  return changed;
-}
-
 /// The result refers to the model and to the known Jacobian: both must outlive it.
 fitting::Problem NestedFit::problem(const NestedModel& model, const RolloutJacobian* known) const {
   fitting::Problem problem{
-      .residuals = [this, &model](const Eigen::VectorXd& x) { return residuals(model_at(model, x)); },
+      .residuals = [this, &model](
+                       const Eigen::VectorXd& x) { return residuals(calib::model_at(model.model, model.unknowns, x)); },
       .coordinates = model.ranges,
       .prior_weight = model.prior_weight};
   if (known == nullptr) return problem;
   problem.known = &known->of_run;
-  for (const Unknown& u : model.unknowns) {
+  for (const calib::Unknown& u : model.unknowns) {
     const auto there = std::find(known->unknowns.begin(), known->unknowns.end(), u);
     problem.known_column.push_back(there == known->unknowns.end() ? -1 : there - known->unknowns.begin());
   }
@@ -49,23 +39,20 @@ void NestedFit::linearise(NestedModel& model, const RolloutJacobian* known) cons
       blocks_.normal_equations(at_model, fitting::jacobian(problem(model, known), model.coordinates, at_model));
 }
 
-NestedModel NestedFit::fit(const calib::JointModel& start, const std::vector<Unknown>& unknowns, int most_iterations,
+NestedModel NestedFit::fit(const calib::JointModel& start, const calib::Unknowns& unknowns, int most_iterations,
                            const RolloutJacobian* known, double prior_weight) const {
   NestedModel found;
   found.model = start;
   found.unknowns = unknowns;
   found.prior_weight = prior_weight;
-  found.coordinates.resize(static_cast<Eigen::Index>(unknowns.size()));
-  for (std::size_t i = 0; i < unknowns.size(); ++i) {
-    found.ranges.push_back(unknowns[i].range());
-    found.coordinates[static_cast<Eigen::Index>(i)] = unknowns[i].coordinate(calib::value(start, unknowns[i].name));
-  }
+  found.ranges = calib::ranges(unknowns);
+  found.coordinates = calib::coordinates(unknowns, start);
   const fitting::Minimum best = fitting::gauss_newton(
       problem(found, known), found.coordinates,
       {.most_iterations = most_iterations, .relative_tolerance = kEnough, .most_secants = kMostSecants});
   found.coordinates = best.x;
   found.squares = best.squares;
-  found.model = model_at(found, best.x);
+  found.model = calib::model_at(start, unknowns, best.x);
   if (!best.jacobian_at_x.empty()) found.blocks = blocks_.normal_equations(best.residuals, best.jacobian_at_x);
   return found;
 }

@@ -12,17 +12,14 @@ namespace pmg::effects {
 /// A fitted model. LinearisedFit's coordinates are those of the unknowns, in their order.
 struct NestedModel : fitting::LinearisedFit {
   calib::JointModel model;
-  std::vector<Unknown> unknowns;
+  calib::Unknowns unknowns;
   /// By how much the coordinates would move with an exact integrator (step_shift()); empty: unknown.
   Eigen::VectorXd step_shift{};
 };
 
-/// (model, coordinates) => (joint model with the unknowns at these coordinates).
-calib::JointModel model_at(const NestedModel& model, const Eigen::VectorXd& coordinates);
-
 /// Jacobian of the rollouts at a model, one column per unknown.
 struct RolloutJacobian {
-  std::vector<Unknown> unknowns;
+  calib::Unknowns unknowns;
   fitting::Jacobian of_run;
 };
 
@@ -46,7 +43,7 @@ class NestedFit {
 
   /// Gauss-Newton from the start's values; the result is never worse than the start. An iteration costs one
   /// rollout of every run, or, where its Jacobian is made anew, one for each unknown and one to six more.
-  NestedModel fit(const calib::JointModel& start, const std::vector<Unknown>& unknowns, int most_iterations,
+  NestedModel fit(const calib::JointModel& start, const calib::Unknowns& unknowns, int most_iterations,
                   const RolloutJacobian* known = nullptr, double prior_weight = 0.0) const;
   /// Fills the model's blocks, at the cost of jacobian(). A fit that ended with a Jacobian at its result has them.
   void linearise(NestedModel& model, const RolloutJacobian* known = nullptr) const;

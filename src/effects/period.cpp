@@ -4,8 +4,8 @@
 #include <cmath>
 #include <map>
 
-#include "calib/fit_problem.hpp"
 #include "calib/joint_runs.hpp"
+#include "calib/unknown.hpp"
 #include "fitting/folds.hpp"
 
 namespace pmg::effects {

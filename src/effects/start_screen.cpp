@@ -7,8 +7,8 @@
 #include <limits>
 #include <numbers>
 
-#include "calib/fit_problem.hpp"
 #include "calib/joint_runs.hpp"
+#include "calib/unknown.hpp"
 #include "effects/period.hpp"
 #include "fitting/covariance.hpp"
 
@@ -71,7 +71,7 @@ void StartScreen::refit_linearly(const fitting::Residuals& residuals, const Form
       fitting::bounded_step(information_, gradient, current_.ranges, current_.coordinates, 1e-3);
   start.squares = std::max(0.0, start.squares + 2.0 * gradient.dot(step) + step.dot(information_ * step));
   for (Eigen::Index i = 0; i < step.size(); ++i) {
-    const Unknown& u = current_.unknowns[static_cast<std::size_t>(i)];
+    const calib::Unknown& u = current_.unknowns[static_cast<std::size_t>(i)];
     if (contains(form.parameters, u.name)) continue;
     calib::set(start.model, u.name, u.value(current_.coordinates[i] + step[i]));
   }

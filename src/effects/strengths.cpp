@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/fit_problem.hpp"
+#include "calib/unknown.hpp"
 #include "fitting/covariance.hpp"
 
 namespace pmg::effects {
@@ -16,7 +16,7 @@ Eigen::VectorXd from_neutral(const NestedModel& model, const Forms& forms, const
   Eigen::VectorXd away = Eigen::VectorXd::Zero(model.coordinates.size());
   const std::vector<std::string> names = strengths(effect, forms);
   for (Eigen::Index i = 0; i < away.size(); ++i) {
-    const Unknown& u = model.unknowns[static_cast<std::size_t>(i)];
+    const calib::Unknown& u = model.unknowns[static_cast<std::size_t>(i)];
     if (contains(names, u.name)) away[i] = model.coordinates[i] - u.coordinate(calib::value(neutral, u.name));
   }
   return away;

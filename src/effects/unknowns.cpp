@@ -90,26 +90,6 @@ BenchScale scale_of(const bench::Bench& bench, const std::vector<calib::SingleJo
   return scale;
 }
 
-double Unknown::coordinate(double value) const {
-  const double inside = std::clamp(value, lower, upper);
-  return logarithmic ? std::log(inside) : inside;
-}
-
-double Unknown::value(double coordinate) const {
-  return std::clamp(logarithmic ? std::exp(coordinate) : coordinate, lower, upper);
-}
-
-// The differences are wide: a joint that sticks one sample earlier or later must not dominate the slope. A held command
-// is delayed by whole simulation steps, so a smaller difference of the delay would change nothing.
-fitting::Coordinate Unknown::range() const {
-  constexpr double kDelayStep_s = 2.5e-3, kLogarithmStep = 1e-2, kShareOfTypical = 5e-3;
-  const double step = difference > 0.0               ? difference
-                      : quantity == Quantity::kDelay ? kDelayStep_s
-                      : logarithmic                  ? kLogarithmStep
-                                                     : kShareOfTypical * typical;
-  return {coordinate(lower), coordinate(upper), step, expected, deviation};
-}
-
 Usual usual(Quantity quantity, const BenchScale& scale) {
   using enum Quantity;
   const double torque = scale.torque_Nm, peak = scale.torque_peak_Nm, speed = scale.speed_rad_s;
@@ -157,8 +137,8 @@ Usual usual(Quantity quantity, const BenchScale& scale) {
   }
 }
 
-Unknown unknown(const std::string& name, const bench::Bench& bench, const BenchScale& scale) {
-  Unknown u{calib::fit_parameter(name, bench)};
+calib::Unknown unknown(const std::string& name, const bench::Bench& bench, const BenchScale& scale) {
+  calib::Unknown u = calib::unknown(name, bench);
   const Usual here = usual(u.quantity, scale);
   u.typical = here.typical;
   u.lower = std::min(u.lower, here.lowest);
@@ -168,7 +148,10 @@ Unknown unknown(const std::string& name, const bench::Bench& bench, const BenchS
   constexpr double kFastSource_s = 0.01;  // quicker than a joint moves: a resistance
   if (name == "drive.supply_sag_time_s") u.lower = kFastSource_s;
   if (name == "transmission.armature_kg_m2") u.lower = std::min(u.lower, 1e-4 * scale.inertia_kg_m2);
-  u.logarithmic = u.lower > 0.0 && u.upper / u.lower >= 10.0 && u.quantity != Quantity::kOrder;
+  // No scale from zero: most of these numbers are small beside their range, and their priors are normal.
+  const bool logarithmic =
+      u.quantity != Quantity::kOrder && calib::scale_of_range(u.lower, u.upper) == calib::Scale::kLogarithmic;
+  u.scale = logarithmic ? calib::Scale::kLogarithmic : calib::Scale::kLinear;
   // With less than one period over the range of motion, a wave is a proxy for an offset or a slope.
   if (u.quantity == Quantity::kOrder) u.lower = std::max(u.lower, lowest_order(scale));
   if (u.quantity == Quantity::kPhase) u.lower = -10.0, u.upper = 10.0;

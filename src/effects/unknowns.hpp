@@ -1,11 +1,11 @@
-// The free parameters of a diagnosis fit: ranges, difference steps, priors and start values.
+// The free parameters of a diagnosis fit: their ranges, and what a bench's motion makes usual.
 #pragma once
 
 #include <limits>
 #include <string>
 #include <vector>
 
-#include "calib/fit_problem.hpp"
+#include "calib/unknown.hpp"
 
 namespace pmg::effects {
 
@@ -26,20 +26,6 @@ struct BenchScale {
 BenchScale scale_of(const bench::Bench& bench, const std::vector<calib::SingleJoint>& runs,
                     const calib::JointModel& model);
 
-/// A free parameter. A fit moves its coordinate: the value, or its natural logarithm.
-struct Unknown : calib::FitParameter {
-  bool logarithmic = false;
-  double typical = 1.0;  ///< a change of the value that matters
-  double expected = 0.0,
-         deviation = 0.0;   ///< normal prior of the coordinate, from a calibration; none if deviation is 0
-  double difference = 0.0;  ///< of the coordinate, for the Jacobian's column; 0: range() chooses by its kind
-
-  double coordinate(double value) const;
-  double value(double coordinate) const;
-  fitting::Coordinate range() const;  ///< bounds, difference step and prior of the coordinate
-  bool operator==(const Unknown&) const = default;
-};
-
 /// What a bench's motion makes usual for a quantity.
 struct Usual {
   double typical = 0.0;  ///< a change that matters
@@ -50,7 +36,7 @@ struct Usual {
 Usual usual(model::Quantity quantity, const BenchScale& scale);
 
 /// (parameter name, bench, scale) => (unknown with its whole plausible range on this bench).
-Unknown unknown(const std::string& name, const bench::Bench& bench, const BenchScale& scale);
+calib::Unknown unknown(const std::string& name, const bench::Bench& bench, const BenchScale& scale);
 
 /// Order of a wave with one period over the range of motion [1/turn].
 double lowest_order(const BenchScale& scale);

@@ -166,10 +166,10 @@ sim::ActuatorsByJoint calibrated_motors(const sim::ActuatorsByJoint& plant, cons
   sim::ActuatorsByJoint found;
   for (const auto& [name, truth] : plant) {
     const int joint = robot.joint_index.at(name);
-    std::vector<calib::FitParameter> unknowns;
+    calib::Unknowns unknowns;
     for (const char* parameter : {"drive.kp_scale", "drive.kd_scale", "transmission.armature_kg_m2",
                                   "friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad", "command.delay_s"}) {
-      unknowns.push_back(calib::fit_parameter(parameter, bench));
+      unknowns.push_back(calib::unknown(parameter, bench));
     }
     calib::JointModel start;
     start.actuator.transmission.armature_kg_m2 = robot.joints[static_cast<std::size_t>(joint)].armature_kg_m2;

@@ -3,11 +3,7 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <vector>
 
-#include "model/robot_io.hpp"
-#include "model/robot_model.hpp"
-#include "pmg/reference.hpp"
 #include "policy/observation_layout.hpp"
 
 namespace pmg::policy {
@@ -29,13 +25,7 @@ class Observation {
   const ObservationLayout& layout() const { return layout_; }
 
  private:
-  struct Frame {
-    Eigen::Vector3d gyro = Eigen::Vector3d::Zero(), gravity = Eigen::Vector3d::Zero();
-    JointVector q, dq;
-    Eigen::VectorXf action;
-  };
   const Frame& frame(int age_ticks) const noexcept;
-  void fill(const ObservationTerm& term, const Reference& reference, const Command& observed) noexcept;
 
   ObservationLayout layout_;
   JointVector q_stand_;

@@ -16,7 +16,7 @@ fitting::ResidualFunction residuals(const effects::NestedFit& fit, const Rollout
 
 calib::JointModel RolloutFit::model_at(const Eigen::VectorXd& at) const {
   const Eigen::Index others = without.coordinates.size();
-  calib::JointModel model = effects::model_at(without, at.head(others));
+  calib::JointModel model = calib::model_at(without.model, without.unknowns, at);
   model.actuator.residual_torque.count = 1;
   model.actuator.residual_torque.terms[0] = term_of(candidate, at.tail(at.size() - others), bound_Nm);
   return model;

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/running_program.hpp"
-#include "calib/fit_problem.hpp"
 #include "calib/synthetic_bench.hpp"
+#include "calib/unknown.hpp"
 #include "effects/fit_words.hpp"
 #include "recorded_benches.hpp"
 #include "sim/motor_file.hpp"
@@ -149,7 +149,7 @@ TEST_F(PmgCalibrateMotor, FitsTheLoadThatBenchYamlCallsUnknown) {
     ASSERT_TRUE(json["parameters"].contains(name)) << name;
     EXPECT_TRUE(json["parameters"][name]["deviation"].is_null()) << "all torques may be larger by one factor";
   }
-  EXPECT_THAT(test::text_of(out_ / "motor.yaml"), HasSubstr("these runs don't tell"));
+  EXPECT_THAT(test::text_of(out_ / "motor.yaml"), HasSubstr("these runs don't determine"));
 }
 
 TEST_F(PmgCalibrateMotor, SaysTodaysWordForAnEarlierOne) {

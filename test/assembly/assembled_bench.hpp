@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "assembly/variation.hpp"
-#include "calib/fit_problem.hpp"
 #include "calib/synthetic_bench.hpp"
+#include "calib/unknown.hpp"
 
 namespace pmg::assembly {
 
@@ -60,7 +60,7 @@ class AssembledBench {
   AssemblyDifferences found(const AssemblyOptions& options = {}, const std::vector<std::string>& further = {}) const {
     const effects::NestedFit fit(runs_, 1);
     const effects::BenchScale scale = effects::scale_of(bench_, runs_, healthy());
-    std::vector<effects::Unknown> unknowns;
+    calib::Unknowns unknowns;
     std::vector<std::string> names = {"friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad"};
     names.insert(names.end(), further.begin(), further.end());
     for (const std::string& name : names) unknowns.push_back(effects::unknown(name, bench_, scale));

@@ -29,10 +29,9 @@ calib::JointModel truth() {
 
 calib::FitProblem problem(const std::vector<std::string>& names, double noise_rad, int runs = 4) {
   const bench::Bench bench = test::pd_bench(true);
-  std::vector<calib::FitParameter> parameters;
-  for (const std::string& name : calib::basic_parameters(bench))
-    parameters.push_back(calib::fit_parameter(name, bench));
-  for (const std::string& name : names) parameters.push_back(calib::fit_parameter(name, bench));
+  calib::Unknowns parameters;
+  for (const std::string& name : calib::basic_parameters(bench)) parameters.push_back(calib::unknown(name, bench));
+  for (const std::string& name : names) parameters.push_back(calib::unknown(name, bench));
   return {parameters, {}, test::record(bench, truth(), runs, noise_rad)};
 }
 
@@ -41,7 +40,7 @@ TEST(MotorFit, FindsWhatTheJointIsMadeOf) {
   const calib::FitProblem joint =
       problem({"friction.coulomb_Nm", "friction.viscous_Nm_s_per_rad", "command.delay_s"}, 1e-3);
   const calib::Fit fit = calib::fit(joint, {.starts = 4, .threads = 2});
-  for (const calib::FitParameter& p : joint.parameters()) {
+  for (const calib::Unknown& p : joint.parameters()) {
     const double expected = calib::value(truth(), p.name);
     EXPECT_NEAR(calib::value(fit.model, p.name), expected, 0.04 * expected) << p.name;
   }
@@ -129,8 +128,8 @@ TEST(MotorFit, SaysWhyNoModelWithinTheRangesCanBeSimulated) {
   calib::JointModel without_rotor = truth();
   without_rotor.actuator.transmission.armature_kg_m2 = 0.0;
   const bench::Bench bench = test::pd_bench(true);
-  const calib::FitProblem shaft({calib::fit_parameter("transmission.stiffness_Nm_per_rad", bench),
-                                 calib::fit_parameter("transmission.damping_Nm_s_per_rad", bench)},
+  const calib::FitProblem shaft({calib::unknown("transmission.stiffness_Nm_per_rad", bench),
+                                 calib::unknown("transmission.damping_Nm_s_per_rad", bench)},
                                 without_rotor, usual.runs());
   try {
     calib::fit(shaft, {.starts = 1});
@@ -225,8 +224,8 @@ calib::FitProblem of_unknown_load(const std::vector<double>& masses_kg, bool gai
   std::vector<std::string> names = {"transmission.armature_kg_m2", "friction.coulomb_Nm"};
   if (!gains_known) names.insert(names.end(), {"drive.kp_scale", "drive.kd_scale"});
   for (const std::string& name : calib::unknown_loads(bench)) names.push_back(name);
-  std::vector<calib::FitParameter> parameters;
-  for (const std::string& name : names) parameters.push_back(calib::fit_parameter(name, bench));
+  calib::Unknowns parameters;
+  for (const std::string& name : names) parameters.push_back(calib::unknown(name, bench));
   return {parameters, {}, runs};
 }
 
@@ -367,7 +366,7 @@ TEST(FitProblem, PointsAreWhatModelsAre) {
   model.actuator.sensor.zero_offset_rad = -0.02;
   model.actuator.command.rate_limit_rad_s = 5.0;
   const calib::JointModel back = joint.model_at(joint.point_of(model));
-  for (const calib::FitParameter& p : joint.parameters()) {
+  for (const calib::Unknown& p : joint.parameters()) {
     EXPECT_NEAR(calib::value(back, p.name), calib::value(model, p.name), 1e-12) << p.name;
   }
 }

@@ -72,7 +72,7 @@ inline RandomBench with_repeats(RandomBench made, unsigned seed) {
 
 inline RandomBench repeated_bench(unsigned seed) { return with_repeats(random_bench(seed), seed); }
 
-/// A drive that is told torques: those of the load's weight and inertia along a planned motion, on two loads.
+/// A drive that is commanded torques: those of the load's weight and inertia along a planned motion, on two loads.
 inline RandomBench torque_bench(unsigned seed) {
   RandomBench made = random_bench(seed);
   made.bench.law = bench::DriveLaw::kTorque;

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "calib/fit_problem.hpp"
+#include "calib/unknown.hpp"
 #include "diagnosis/diagnosis_json.hpp"
 #include "diagnosis_page/diagnosis_page.hpp"
 #include "rules_fixture.hpp"

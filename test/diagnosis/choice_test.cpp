@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-#include "calib/fit_problem.hpp"
+#include "calib/unknown.hpp"
 #include "diagnosis/effect_search.hpp"
 #include "diagnosis/rules_fixture.hpp"
 #include "effects/catalogue.hpp"
@@ -28,7 +28,7 @@ class Judged : public Rules {
   Extension extension(const EffectSearch& search, const std::string& effect, double value, int iterations = 10) const {
     Extension made{{effect}, {}, {}, {}, {}};
     calib::JointModel start = truth_;
-    std::vector<effects::Unknown> unknowns;
+    calib::Unknowns unknowns;
     for (const std::string& name : effects::effect(effect).forms.front().parameters)
       unknowns.push_back(effects::unknown(name, bench_, search.base_model().scale));
     calib::set(start, unknowns.front().name, value);
@@ -103,7 +103,7 @@ TEST_F(Judged, AWaveOfNoMoreThanOnePeriodIsNoCogging) {
   Extension wave{{"cogging"}, {}, {}, {}, {}};
   calib::JointModel start = truth_;
   start.actuator.ripple.amplitude_Nm = 0.1;
-  std::vector<effects::Unknown> unknowns;
+  calib::Unknowns unknowns;
   for (const std::string& name : effects::effect("cogging").forms.front().parameters)
     unknowns.push_back(effects::unknown(name, bench_, at.base_model().scale));
   const auto objection = [&](double order) {

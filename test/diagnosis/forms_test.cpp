@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "calib/fit_problem.hpp"
 #include "calib/synthetic_bench.hpp"
+#include "calib/unknown.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/diagnosis_json.hpp"
 #include "diagnosis_page/diagnosis_page.hpp"
@@ -156,7 +156,7 @@ TEST(Forms, ParametersThatAFormFixesAreNotFitted) {
   const Joint joint(bench::DriveLaw::kPositionPd);
   const Fits of(joint);
   std::vector<std::string> names;
-  for (const effects::Unknown& u : of.fits.unknowns({"stribeck"}, {{"stribeck", 1}})) names.push_back(u.name);
+  for (const calib::Unknown& u : of.fits.unknowns({"stribeck"}, {{"stribeck", 1}})) names.push_back(u.name);
   EXPECT_EQ(names, (std::vector<std::string>{"friction.stribeck_Nm", "friction.stribeck_rad_s"}));
 }
 

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "calib/fit_problem.hpp"
 #include "calib/synthetic_bench.hpp"
+#include "calib/unknown.hpp"
 #include "effects/folds.hpp"
 #include "effects/intervals.hpp"
 
@@ -49,7 +49,7 @@ TEST(NestedFit, NeverEndsWorseThanItsStart) {
   const double before = fitting::sum_of_squares(s.fit.residuals(start));
   for (const char* name : {"friction.coulomb_Nm", "command.rate_limit_rad_s", "drive.kp_scale"}) {
     // Within the range of the unknown: an infinite rate limit begins at its end.
-    const effects::Unknown u = effects::unknown(name, s.bench, s.scale);
+    const calib::Unknown u = effects::unknown(name, s.bench, s.scale);
     calib::JointModel inside = start;
     calib::set(inside, name, u.value(u.coordinate(calib::value(start, name))));
     EXPECT_LE(s.fit.fit(inside, {u}, 5).squares, fitting::sum_of_squares(s.fit.residuals(inside))) << name;

@@ -8,8 +8,8 @@
 #include <random>
 
 #include "bench/excitation.hpp"
-#include "calib/fit_problem.hpp"
 #include "calib/synthetic_bench.hpp"
+#include "calib/unknown.hpp"
 #include "diagnosis/next_excitation_files.hpp"
 #include "effects/folds.hpp"
 
@@ -77,7 +77,7 @@ TEST(NextExcitation, ExpectsNothingOfWhatARivalCouldAbsorb) {
   effects::NestedModel one = held(healthy_joint()), other = with("drive.kp_scale", 1.01);
   const AskedFor fixed = asked(bench, one, other);
   const effects::NestedFit fit(test::record(bench, one.model, 2), 1);
-  const effects::Unknown gain =
+  const calib::Unknown gain =
       effects::unknown("drive.kp_scale", bench, effects::scale_of(bench, fit.runs(), one.model));
   one.unknowns = other.unknowns = {gain};
   one.ranges = other.ranges = {gain.range()};

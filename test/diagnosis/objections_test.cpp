@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "calib/fit_problem.hpp"
+#include "calib/unknown.hpp"
 #include "diagnosis/direct_evidence.hpp"
 #include "diagnosis/effect_search.hpp"
 #include "diagnosis/rules_fixture.hpp"

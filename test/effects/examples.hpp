@@ -1,7 +1,7 @@
 // A joint with one form of an effect, as the parameters' table has its examples.
 #pragma once
 
-#include "calib/fit_problem.hpp"
+#include "calib/unknown.hpp"
 #include "effects/catalogue.hpp"
 
 namespace pmg::test {

@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "calib/fit_problem.hpp"
+#include "calib/unknown.hpp"
 #include "effects/catalogue.hpp"
 #include "generated_table.hpp"
 
@@ -29,7 +29,7 @@ TEST(FitWords, EachHasParametersThatAFitKnows) {
     const FitWord found = fit_word(word);
     EXPECT_EQ(found.today, "") << word;
     EXPECT_FALSE(found.parameters.empty()) << word;
-    for (const std::string& name : found.parameters) EXPECT_EQ(calib::fit_parameter(name, {}).name, name) << word;
+    for (const std::string& name : found.parameters) EXPECT_EQ(calib::unknown(name, {}).name, name) << word;
   }
 }
 

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "calib/fit_problem.hpp"
 #include "calib/step_choice.hpp"
 #include "calib/synthetic_bench.hpp"
+#include "calib/unknown.hpp"
 #include "effects/folds.hpp"
 #include "fitting/covariance.hpp"
 #include "fitting/f_distribution.hpp"
@@ -37,7 +37,7 @@ struct Fitted {
   bench::Bench bench = test::pd_bench(true);
   calib::JointModel truth;
   NestedFit fit;
-  Unknown number;
+  calib::Unknown number;
 
   Fitted(const char* name, double recorded_step_s, double fitted_step_s, calib::JointModel joint = dry_joint())
       : truth(joint),

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "calib/fit_problem.hpp"
 #include "calib/step_choice.hpp"
 #include "calib/synthetic_bench.hpp"
+#include "calib/unknown.hpp"
 #include "effects/integration_part.hpp"
 
 namespace pmg::effects {
@@ -25,7 +25,7 @@ double likeness_of(const char* first, const char* second, const std::vector<std:
   for (const auto& [name, value] : values) calib::set(truth, name, value);
   const NestedFit fit(test::always_moving(bench, truth, 4), 1);
   const BenchScale scale = scale_of(bench, fit.runs(), truth);
-  std::vector<Unknown> unknowns;
+  calib::Unknowns unknowns;
   for (const auto& [name, value] : values) unknowns.push_back(unknown(name, bench, scale));
   NestedModel fitted = fit.fit(truth, unknowns, 0);
   fit.linearise(fitted);

@@ -124,7 +124,7 @@ TEST(InverseDynamics, SaysWhatNegativeFrictionMeans) {
   EXPECT_THAT(calib::meaning_of_negative(*early),
               AllOf(HasSubstr("Viscous friction below zero: no joint has that"), HasSubstr("early or late")));
   calib::JointModel start;
-  std::vector<calib::FitParameter> unknowns = {calib::fit_parameter("transmission.armature_kg_m2", bench)};
+  calib::Unknowns unknowns = {calib::unknown("transmission.armature_kg_m2", bench)};
   EXPECT_FALSE(calib::take_inverse_dynamics(*early, bench, start, unknowns));
   EXPECT_EQ(start.actuator, model::ActuatorParameters{});
   EXPECT_EQ(unknowns.size(), 4U) << "inertia, both frictions and the offset: rollouts look for them";

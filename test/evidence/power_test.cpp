@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "calib/fit_problem.hpp"
+#include "calib/unknown.hpp"
 #include "diagnosis/random_bench.hpp"
 #include "effects/catalogue.hpp"
 #include "effects/strengths.hpp"

@@ -79,7 +79,7 @@ void draw_cascade(Draw& draw, Rig& rig) {
   rig.commands_speed = draw.chance(0.3);
 }
 
-/// A motor that is told torques computed beforehand; the recorded torque is the input.
+/// A motor that is commanded torques computed beforehand; the recorded torque is the input.
 void draw_torque(Draw& draw, Rig& rig) {
   draw_position_pd(draw, rig);
   rig.gains.assign(3, {0.0, 0.0});

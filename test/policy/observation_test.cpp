@@ -34,7 +34,7 @@ Reference reference() {
 
 const ObservationTerm& term(const ObservationLayout& layout, const std::string& name, int age_ticks) {
   for (const ObservationTerm& candidate : layout.terms()) {
-    if (candidate.name == name && candidate.age_ticks == age_ticks) return candidate;
+    if (candidate.quantity->name == name && candidate.age_ticks == age_ticks) return candidate;
   }
   throw std::out_of_range(name);
 }
@@ -43,9 +43,9 @@ TEST(ObservationLayout, TermsFillTheVectorWithoutGapsAndNameEveryElement) {
   const ObservationLayout layout(z1());
   int next = 0;
   for (const ObservationTerm& part : layout.terms()) {
-    EXPECT_EQ(part.offset, next) << part.name;
-    EXPECT_EQ(static_cast<int>(part.element.size()), part.size) << part.name;
-    next += part.size;
+    EXPECT_EQ(part.offset, next) << part.quantity->name;
+    EXPECT_EQ(part.element.size(), part.index.size()) << part.quantity->name;
+    next += part.size();
   }
   EXPECT_EQ(layout.size(), next);
   EXPECT_EQ(layout.action_joints().size(), 12u);

@@ -28,11 +28,11 @@ Eigen::VectorXd vector(const json& numbers) {
 
 model::RobotState recorded_state(const json& tick) {
   model::RobotState state;
-  state.gyro_rad_s = vector(tick["gyro_rad_s"]);
+  state.gyro_rad_s = vector(tick["gyro"]);
   const Eigen::VectorXd wxyz = vector(tick["quat_wxyz"]);
   state.orientation_WI = Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).normalized();
-  state.q = vector(tick["q_rad"]);
-  state.dq = vector(tick["dq_rad_s"]);
+  state.q = vector(tick["q"]);
+  state.dq = vector(tick["dq"]);
   return state;
 }
 
@@ -45,9 +45,9 @@ Command command_of(const json& channels) {
 Reference reference_of(const json& tick) {
   Reference reference;
   reference.command = command_of(tick["user_command"]);
-  reference.q = vector(tick["q_ref_rad"]);
-  reference.dq = vector(tick["dq_ref_rad_s"]);
-  reference.phase = tick["phase"].get<double>();
+  reference.q = vector(tick["q_ref"]);
+  reference.dq = vector(tick["dq_ref"]);
+  reference.phase = tick["phi"].get<double>();
   reference.gain = tick["gain"].get<double>();
   return reference;
 }
@@ -56,7 +56,7 @@ std::vector<std::string> layout_of(const ObservationLayout& layout) {
   std::vector<std::string> names;
   for (const ObservationTerm& term : layout.terms()) {
     for (const std::string& element : term.element) {
-      names.push_back(term.name + ", " + std::to_string(term.age_ticks) + " ticks old: " + element);
+      names.push_back(term.quantity->name + ", " + std::to_string(term.age_ticks) + " ticks old: " + element);
     }
   }
   return names;
@@ -73,6 +73,7 @@ TEST(TrainingObservation, EqualsTheControllersElementByElement) {
   }
   Observation observation(robot);
   ASSERT_EQ(training["observation"], json::parse(observation.layout().to_json()));
+  ASSERT_EQ(training["quantities"], json::parse(quantities_json()));
   const std::vector<std::string> names = layout_of(observation.layout());
   ASSERT_GT(training["ticks"].size(), static_cast<std::size_t>(ObservationLayout::kOldest_ticks) + 1)
       << "too few for the oldest frame";

@@ -9,6 +9,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "calib/fit_problem.hpp"
 #include "calib/synthetic_bench.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/diagnosis_json.hpp"
@@ -169,7 +170,7 @@ Extension extended(const std::vector<calib::SingleJoint>& joints, const Options&
   const bench::Bench bench = test::pd_bench(true);
   const effects::NestedFit fit(joints, 1);
   const effects::BenchScale scale = effects::scale_of(bench, fit.runs(), healthy());
-  const std::vector<effects::Unknown> unknowns = {effects::unknown("friction.coulomb_Nm", bench, scale)};
+  const calib::Unknowns unknowns = {effects::unknown("friction.coulomb_Nm", bench, scale)};
   effects::NestedModel model = fit.fit(healthy(), unknowns, 5);
   fit.linearise(model);
   const fitting::HeldOut held_out = fit.held_out_squares(model, effects::folds(fit));

@@ -75,7 +75,8 @@ nlohmann::ordered_json describe(const pmg::model::RobotModel& robot, const std::
           {"command", range},
           {"fields", columns},
           {"row_size", fields.back().offset + fields.back().size},
-          {"observation", ordered_json::parse(layout.to_json())}};
+          {"observation", ordered_json::parse(layout.to_json())},
+          {"quantities", ordered_json::parse(pmg::policy::quantities_json())}};
 }
 
 }  // namespace

@@ -9,8 +9,6 @@ import torch
 
 from pmg_train.rotations import rotate_back
 
-FROM_STAND = ("q_ref", "q")  # count from the standing posture
-
 
 class Term(NamedTuple):
     name: str
@@ -46,22 +44,23 @@ class Observation:
         ages: dict[int, list[dict]] = {}
         for term in description["observation"]["terms"]:
             ages.setdefault(term["age_ticks"], []).append(term)
-        self.current = [self._term(term, joints, description["action_joints"], stand) for term in ages.pop(0)]
+        of_layout = lambda term: self._term(term, joints, description, stand)
+        self.current = [of_layout(term) for term in ages.pop(0)]
         self.ages = list(ages)
         frames = [[(term["name"], term["scale"], term["elements"]) for term in terms] for terms in ages.values()]
         if any(frame != frames[0] for frame in frames):
             raise ValueError(f"observation: frames of {self.ages} ticks hold different terms; expected the same")
         older = next(iter(ages.values()), [])
-        self.older = [self._term(term, joints, description["action_joints"], stand) for term in older]
+        self.older = [of_layout(term) for term in older]
         size = sum(term["size"] for term in older)
         self.history = stand.new_zeros(worlds, max(self.ages, default=0), size)  # newest first
 
     @staticmethod
-    def _term(term: dict, joints: list[str], action_joints: list[str], stand: torch.Tensor) -> Term:
+    def _term(term: dict, joints: list[str], description: dict, stand: torch.Tensor) -> Term:
         name, elements = term["name"], term["elements"]
-        available = action_joints if name == "last_action" else joints if set(elements) <= set(joints) else elements
+        available = description["action_joints"] if name == "last_action" else joints if set(elements) <= set(joints) else elements
         columns = _columns(elements, available, stand.device)
-        return Term(name, columns, term["scale"], stand[columns] if name in FROM_STAND else None)
+        return Term(name, columns, term["scale"], stand[columns] if description["quantities"][name]["from_stand"] else None)
 
     def gravity_direction(self, quat: torch.Tensor) -> torch.Tensor:
         """Unit vector down in the base's frame; quat (worlds, 4) w, x, y, z, of any length."""

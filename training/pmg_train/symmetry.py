@@ -8,17 +8,6 @@ from dataclasses import dataclass
 
 import torch
 
-# Reflection in the sagittal plane: y turns round in vectors, x and z in axial vectors such as a rate of rotation; the gait
-# is shifted by half a cycle.
-SIGNS = {
-    "gyro": {"x": -1, "y": 1, "z": -1},
-    "gravity_direction": {"x": 1, "y": -1, "z": 1},
-    "command": {"vx_m_s": 1, "vy_m_s": -1, "omega_rad_s": -1, "pitch_rad": 1, "roll_rad": -1, "height_m": 1},
-    "user_command": {"vx_m_s": 1, "vy_m_s": -1, "omega_rad_s": -1, "pitch_rad": 1, "roll_rad": -1, "height_m": 1},
-    "phase": {"gain_sin": -1, "gain_cos": -1, "gain": 1},
-}
-JOINT_TERMS = ("q_ref", "dq_ref", "q", "dq", "last_action")
-
 
 @dataclass
 class Mirror:
@@ -39,21 +28,20 @@ def joint_mirror(description: dict, names: list[str], device="cpu") -> Mirror:
 
 
 def observation_mirror(description: dict, device="cpu") -> Mirror:
-    """ValueError when the layout has a term or an element whose mirror image isn't known."""
+    """ValueError when a term isn't where the ones before it end."""
     index, sign = [], []
     for term in description["observation"]["terms"]:
         name, elements, offset = term["name"], term["elements"], term["offset"]
         if offset != len(index):
             raise ValueError(f"observation term {name} begins at {offset}; expected {len(index)}")
-        if name in JOINT_TERMS:
+        signs = description["quantities"][name]["mirror_sign"]  # none of joints
+        if signs:
+            index += range(offset, offset + len(elements))
+            sign += [signs[element] for element in elements]
+        else:
             joints = joint_mirror(description, elements)
             index += [offset + i for i in joints.index.tolist()]
             sign += joints.sign.tolist()
-        elif name in SIGNS and all(element in SIGNS[name] for element in elements):
-            index += range(offset, offset + len(elements))
-            sign += [SIGNS[name][element] for element in elements]
-        else:
-            raise ValueError(f"observation term {name} {elements}: no mirror image known")
     return _mirror(index, sign, device)
 
 

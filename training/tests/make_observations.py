@@ -18,25 +18,25 @@ from pmg_train.observation import Observation
 from pmg_train.references import ReferenceBatch
 
 TICKS = 9  # two more than the oldest frame needs
-CHANNELS = 6
+COMPUTED = ("gravity_direction", "phase")  # from the tick's quaternion, phase and gain
 
 
-def draw_tick(random: np.random.Generator, stand: list[float], actions: int) -> dict:
-    joints, rounded = len(stand), lambda x: [round(float(v), 4) for v in x]
+def draw_tick(random: np.random.Generator, stand: list[float], description: dict) -> dict:
+    """A quaternion, phi and gain, and values of all other quantities by their names."""
+    rounded = lambda x: [round(float(v), 4) for v in x]
     quat = random.normal(size=4)
-    return dict(
-        gyro_rad_s=rounded(random.normal(size=3)),
-        quat_wxyz=rounded(quat / np.linalg.norm(quat)),
-        q_rad=rounded(np.array(stand) + 0.3 * random.normal(size=joints)),
-        dq_rad_s=rounded(3 * random.normal(size=joints)),
-        q_ref_rad=rounded(np.array(stand) + 0.2 * random.normal(size=joints)),
-        dq_ref_rad_s=rounded(2 * random.normal(size=joints)),
-        phase=round(float(random.uniform()), 4),
-        gain=round(float(random.uniform()), 4),
-        command=rounded(0.3 * random.normal(size=CHANNELS)),
-        user_command=rounded(0.3 * random.normal(size=CHANNELS)),
-        last_action=rounded(random.normal(size=actions)),
-    )
+    tick = dict(quat_wxyz=rounded(quat / np.linalg.norm(quat)), phi=round(float(random.uniform()), 4), gain=round(float(random.uniform()), 4))
+    for name, quantity in description["quantities"].items():
+        if name in COMPUTED:
+            continue
+        if name == "last_action":
+            values = random.normal(size=len(description["action_joints"]))
+        elif quantity["mirror_sign"]:
+            values = 0.3 * random.normal(size=len(quantity["mirror_sign"]))
+        else:  # of all joints
+            values = np.array(stand) + 0.3 * random.normal(size=len(stand)) if quantity["from_stand"] else 3 * random.normal(size=len(stand))
+        tick[name] = rounded(values)
+    return tick
 
 
 def observations(ticks: list[dict], description: dict) -> list[list[float]]:
@@ -46,19 +46,10 @@ def observations(ticks: list[dict], description: dict) -> list[list[float]]:
     out = []
     for i, tick in enumerate(ticks):
         quat = np.array(tick["quat_wxyz"]) / np.linalg.norm(tick["quat_wxyz"])
-        angle, gain = 2 * math.pi * tick["phase"], tick["gain"]
-        values = dict(
-            gyro=row(tick["gyro_rad_s"]),
-            gravity_direction=observation.gravity_direction(row(quat.tolist())),
-            command=row(tick["command"]),
-            user_command=row(tick["user_command"]),
-            phase=row([gain * math.sin(angle), gain * math.cos(angle), gain]),
-            q_ref=row(tick["q_ref_rad"]),
-            dq_ref=row(tick["dq_ref_rad_s"]),
-            q=row(tick["q_rad"]),
-            dq=row(tick["dq_rad_s"]),
-            last_action=row(tick["last_action"]),
-        )
+        angle, gain = 2 * math.pi * tick["phi"], tick["gain"]
+        values = {name: row(tick[name]) for name in description["quantities"] if name not in COMPUTED}
+        values["gravity_direction"] = observation.gravity_direction(row(quat.tolist()))
+        values["phase"] = row([gain * math.sin(angle), gain * math.cos(angle), gain])
         out.append(observation.with_history(values, torch.tensor([i == 0]))[0].tolist())
     return out
 
@@ -67,16 +58,12 @@ def main(library: str, robot: str, out: Path) -> None:
     description = ReferenceBatch(library, robot).description
     joints = [{key: joint[key] for key in ("name", "stand_rad")} for joint in description["joints"]]
     random = np.random.default_rng(11)
-    ticks = [draw_tick(random, [joint["stand_rad"] for joint in joints], len(description["action_joints"])) for _ in range(TICKS)]
+    ticks = [draw_tick(random, [joint["stand_rad"] for joint in joints], description) for _ in range(TICKS)]
     for tick, seen in zip(ticks, observations(ticks, description), strict=True):
         tick["observation"] = [float(f"{x:.9g}") for x in seen]
-    text = json.dumps(
-        dict(
-            robot=description["robot"], joints=joints, action_joints=description["action_joints"], observation=description["observation"], ticks=ticks
-        )
-    )
+    text = json.dumps(dict(joints=joints, ticks=ticks, **{key: description[key] for key in ("robot", "action_joints", "observation", "quantities")}))
     out.write_text(
-        text.replace('"ticks": [{', '"ticks": [\n{').replace('}, {"gyro', '},\n{"gyro').replace(', "observation": {', ',\n"observation": {') + "\n"
+        text.replace('"ticks": [{', '"ticks": [\n{').replace('}, {"quat', '},\n{"quat').replace(', "observation": {', ',\n"observation": {') + "\n"
     )
 
 

@@ -1,5 +1,6 @@
-// Sign and unit of the torque that the drive is told: a feed-forward, or the command of a drive whose law is torque.
-#include "data_faults/told_torque_check.hpp"
+// Sign and unit of the torque that the drive is commanded: a feed-forward, or the command of a drive whose law is
+// torque.
+#include "data_faults/commanded_torque_check.hpp"
 
 #include <fmt/format.h>
 
@@ -39,9 +40,9 @@ std::vector<Unit> known_units(const Examined& e) {
   return units;
 }
 
-bool tells_torque(const Examined& e, std::size_t run) {
-  const std::vector<double>& told = bench::values(e.runs()[run].recording, told_torque(e));
-  return std::any_of(told.begin(), told.end(), [](double value) { return value != 0.0; });
+bool commands_torque(const Examined& e, std::size_t run) {
+  const std::vector<double>& torque = bench::values(e.runs()[run].recording, commanded_torque(e));
+  return std::any_of(torque.begin(), torque.end(), [](double value) { return value != 0.0; });
 }
 
 /// The unit nearest to a measured factor; "" if the factor is none of a unit.
@@ -64,19 +65,19 @@ Unit unit_of(const Examined& e, double factor) {
 bool harmless(const Unit& unit) { return unit.what.empty() && unit.factor > 0.0; }
 
 DataFault fault_of(const Examined& e, const Unit& unit, const std::vector<std::string>& files) {
-  const std::string column = bench::column_name(told_torque(e), e.linear());
+  const std::string column = bench::column_name(commanded_torque(e), e.linear());
   const bool sign_only = unit.what.empty();
   DataFault fault{.kind = sign_only ? Kind::kSign : Kind::kUnit, .where = place_of(column, files), .correction = {}};
   const std::string of = files.empty() ? column : fmt::format("{} of {}", column, files.front());
   const double factor = sign_only ? -1.0 : unit.factor;
   fault.correction = sign_only ? fmt::format("turn the sign of {}", of)
                                : fmt::format("{} is in {}: multiply it by {:.5g}", of, unit.what, factor);
-  fault.fixes = {{.files = files, .columns = {told_torque(e)}, .factor = factor}};
+  fault.fixes = {{.files = files, .columns = {commanded_torque(e)}, .factor = factor}};
   fault.files = files;
   return fault;
 }
 
-/// A fit in which the told torque of some runs has another factor.
+/// A fit in which the commanded torque of some runs has another factor.
 struct Outcome {
   double factor = 1.0, loss = 0.0;
   QuickFit fit;
@@ -87,19 +88,19 @@ Outcome refitted(const Examined& e, const std::vector<calib::SingleJoint>& joint
   if (from.factor == 0.0 || from.factor == 1.0) {
     from.fit = e.model().refit(joints, from.fit, {}, kRefitSteps);
   } else {
-    from.fit = e.model().refit(joints, from.fit, {{.of = &RunFactors::told_torque, .runs = with}}, kRefitSteps);
+    from.fit = e.model().refit(joints, from.fit, {{.of = &RunFactors::commanded_torque, .runs = with}}, kRefitSteps);
     from.factor *= from.fit.factors.front();
   }
   from.loss = from.fit.loss;
   return from;
 }
 
-/// ln of the run's error with its told torque multiplied by the factor.
+/// ln of the run's error with its commanded torque multiplied by the factor.
 double log_error_with(const Examined& e, std::size_t run, double factor) {
-  return data_faults::log_error_with(e, run, {.files = {}, .columns = {told_torque(e)}, .factor = factor});
+  return data_faults::log_error_with(e, run, {.files = {}, .columns = {commanded_torque(e)}, .factor = factor});
 }
 
-/// The factor on one run's told torque that explains the run best, of one sign.
+/// The factor on one run's commanded torque that explains the run best, of one sign.
 Outcome best_factor(const Examined& e, std::size_t run, double sign) {
   constexpr int kOctaves = 4, kRefinements = 8;  // the bracket falls to a fiftieth
   constexpr double kGolden = 0.6180339887498949;
@@ -125,15 +126,15 @@ Outcome best_factor(const Examined& e, std::size_t run, double sign) {
 
 }  // namespace
 
-bench::Column told_torque(const Examined& e) {
+bench::Column commanded_torque(const Examined& e) {
   return e.bench().law == bench::DriveLaw::kTorque ? bench::Column::kTorque : bench::Column::kFeedForward;
 }
 
-std::vector<DataFault> told_torque_fault(const Examined& e) {
+std::vector<DataFault> commanded_torque_fault(const Examined& e) {
   const DataFaultOptions& o = e.options();
   std::vector<std::size_t> with;
   for (std::size_t i = 0; i < e.few().size(); ++i) {
-    if (tells_torque(e, e.few()[i])) with.push_back(i);
+    if (commands_torque(e, e.few()[i])) with.push_back(i);
   }
   if (with.empty()) return {};
   const std::vector<calib::SingleJoint> joints = e.few_of(e.runs());
@@ -169,9 +170,9 @@ std::vector<DataFault> told_torque_fault(const Examined& e) {
   return {fault};
 }
 
-void try_told_torque(const Examined& e, std::size_t run, std::vector<Explained>& into) {
+void try_commanded_torque(const Examined& e, std::size_t run, std::vector<Explained>& into) {
   const double before = e.log_error()[run];
-  if (!tells_torque(e, run) || before < fitting::median(e.log_error())) return;  // no worse than the others
+  if (!commands_torque(e, run) || before < fitting::median(e.log_error())) return;  // no worse than the others
   const std::string file = e.runs()[run].file;
   const Follows by = follows(e, e.runs()[run]);
   // Where the torque is the command, readings and torque turned are the same joint; the planned motion tells them
