@@ -119,7 +119,8 @@ class AdmissibleSet {
         c += 4.0 * gain[d] * gain[d] * bend_[d].col(phase);
       }
       for (Eigen::Index i = 0; i < q_s.size(); ++i) {
-        contained = contained && a[i] + corners_up[i] - c[i] <= room_up[i] && corners_down[i] - a[i] + c[i] <= room_down[i];
+        contained =
+            contained && a[i] + corners_up[i] - c[i] <= room_up[i] && corners_down[i] - a[i] + c[i] <= room_down[i];
         first = std::min(first, leaves(a[i] + corners_up[i], c[i], room_up[i]));
         first = std::min(first, leaves(corners_down[i] - a[i], -c[i], room_down[i]));
       }

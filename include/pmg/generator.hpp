@@ -127,9 +127,9 @@ class Generator {
   /// Another rate limit for this channel [1/s], until reset().
   void set_rate(Channel channel, double rate_per_s) noexcept { limiter_.set_rate(channel, rate_per_s); }
 
-  /// From now on until reset(), what to add to the velocities of the user's admissible command [m/s, m/s, rad/s], within
-  /// their range. reference().command has it, and reference().correction says how much; command_limited judges the user's
-  /// command alone.
+  /// From now on until reset(), what to add to the velocities of the user's admissible command [m/s, m/s, rad/s],
+  /// within their range. reference().command has it, and reference().correction says how much; command_limited judges
+  /// the user's command alone.
   void set_correction(const std::array<double, kVelocityChannels>& correction) noexcept { correction_ = correction; }
 
   /// One tick: (user, dt) => (reference). No heap, no exception. A channel that isn't finite keeps its last value. A dt
@@ -253,7 +253,8 @@ class Generator {
   Command corrected(Command command) noexcept {
     for (std::size_t c = 0; c < kVelocityChannels; ++c) {
       const double admitted = command.u[c];
-      if (correction_[c] != 0.0) command.u[c] = std::clamp(admitted + correction_[c], limits_.lower[c], limits_.upper[c]);
+      if (correction_[c] != 0.0)
+        command.u[c] = std::clamp(admitted + correction_[c], limits_.lower[c], limits_.upper[c]);
       reference_.correction[c] = command.u[c] - admitted;
     }
     return command;
@@ -269,8 +270,8 @@ class Generator {
     return asked;
   }
 
-  /// (admissible share of the gains) => (share that is played). Where the set's share may jump, the share takes its time;
-  /// what joints lack of room meanwhile, clamp_joints takes.
+  /// (admissible share of the gains) => (share that is played). Where the set's share may jump, the share takes its
+  /// time; what joints lack of room meanwhile, clamp_joints takes.
   double follow(double velocity_share, double dt_s) noexcept {
     const double most = kShareRate_per_s * dt_s;
     velocity_share_ = admissible_.bends() ? velocity_share_ + std::clamp(velocity_share - velocity_share_, -most, most)

@@ -21,10 +21,11 @@ struct Reference {
   PerFoot<double> contact_weight{};  ///< contact with cosine edges inside the stance, in [0, 1]
   Command command;                   ///< the admissible, rate-limited command that q_ref realises
   Command command_rate;              ///< backward difference of command [unit/s]
-  /// What Generator::set_correction() has added to command's velocities [m/s, m/s, rad/s]; without it command is the user's.
+  /// What Generator::set_correction() has added to command's velocities [m/s, m/s, rad/s]; without it command is the
+  /// user's.
   std::array<double, kVelocityChannels> correction{};
-  bool command_limited = false;      ///< the user's command was outside the admissible set
-  bool joint_clamped = false;        ///< the last guard clamped a joint (joint_clamp.hpp)
+  bool command_limited = false;  ///< the user's command was outside the admissible set
+  bool joint_clamped = false;    ///< the last guard clamped a joint (joint_clamp.hpp)
 };
 
 /// What is taken of the user's command: Reference::command without the correction.

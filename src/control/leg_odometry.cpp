@@ -30,8 +30,7 @@ std::optional<std::array<double, kVelocityChannels>> LegOdometry::velocity_H(con
   for (const Foot foot : {kLeft, kRight}) {
     if (!(weight[foot] > 0.0)) continue;
     const Eigen::Vector3d p_B = gco::contact_point(feet[foot].sole_B, R_HB).p_BC;
-    const Eigen::Vector3d v_B =
-        feet[foot].v_BF + feet[foot].omega_BF.cross(p_B - feet[foot].p_BF) + omega_B.cross(p_B);
+    const Eigen::Vector3d v_B = feet[foot].v_BF + feet[foot].omega_BF.cross(p_B - feet[foot].p_BF) + omega_B.cross(p_B);
     v_H -= weight[foot] * (R_HB * v_B);
   }
   v_H /= weight[kLeft] + weight[kRight];

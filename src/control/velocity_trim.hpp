@@ -44,8 +44,9 @@ class VelocityTrim {
                                                     const Reference& reference, bool walks) noexcept;
 
  private:
-  static constexpr double kMostRate_per_s = 1.0;     ///< of a correction, in ranges
-  static constexpr double kDoubleSupportRate = 0.15;  ///< of it where both feet carry, as the generator's: they slip less
+  static constexpr double kMostRate_per_s = 1.0;  ///< of a correction, in ranges
+  static constexpr double kDoubleSupportRate =
+      0.15;  ///< of it where both feet carry, as the generator's: they slip less
 
   void learn(const model::RobotState& state, const Command& user, const Command& taken,
              const PerFoot<double>& weight) noexcept;
