@@ -240,11 +240,7 @@ std::vector<BenchRun> Bench::read_runs(const RowFilter& filter, const work::Prog
     if (!kept[row]) continue;
     BenchRun run = describe(*this, row);
     if (std::find(left_out.begin(), left_out.end(), run.file) != left_out.end()) continue;
-    const auto there = as_read->find(run.file);
-    // Of positions too large for their unit only the reader's error says file, line and column.
-    const bool again = there != as_read->end() && (other_units || plausible_positions(there->second, format.linear));
-    run.recording = again ? there->second : read_recording(folder / "runs" / run.file, format);
-    if (!again) as_read->insert_or_assign(run.file, run.recording);
+    run.recording = read_recording(folder / "runs" / run.file, format);
     for (const Correction& correction : corrections) correct(run, correction);
     found.push_back(std::move(run));
     if (!progress(static_cast<double>(row + 1) / static_cast<double>(kept.size()))) break;

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -63,13 +61,9 @@ struct Bench {
   std::vector<Correction> corrections;  ///< of what the files say; none of them until somebody asks for it
   std::vector<std::string> left_out;    ///< files of runs that are not read
   bool other_units = false;             ///< positions too large for their unit are read, too (RecordingFormat)
-  /// What the files of runs say, by file, before corrections: a bench and its copies read each file once. One thread at
-  /// a time.
-  std::shared_ptr<std::map<std::string, Recording>> as_read = std::make_shared<std::map<std::string, Recording>>();
 
-  /// (filter) => (its rows with their recordings, each file read once, checked and corrected, without those left out).
-  /// After an interruption: the rows read so far. Throws files::ConfigError; std::invalid_argument if the filter keeps
-  /// no row.
+  /// (filter) => (its rows with their recordings, checked and corrected, without those left out). After an
+  /// interruption: the rows read so far. Throws files::ConfigError; std::invalid_argument if the filter keeps no row.
   std::vector<BenchRun> read_runs(const RowFilter& filter, const work::Progress& progress = {}) const;
   /// (feed-forward torque, supply voltage or 1) => (what the drive adds to its output for it [unit of output]):
   /// torque / (torque_per_unit supply). NaN if bench.yaml doesn't know the drive's torque constant.

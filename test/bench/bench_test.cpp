@@ -108,28 +108,6 @@ TEST_F(BenchFiles, AreReadAsTheyWereWritten) {
   EXPECT_EQ(runs[1].recording.dropouts(), 0U);
 }
 
-TEST_F(BenchFiles, AreReadOnceByABenchAndItsCopies) {
-  const bench::Bench bench = bench::read_bench(folder_);
-  const std::vector<bench::BenchRun> first = bench.read_runs(bench::RowFilter(""));
-  fs::remove_all(folder_ / "runs");
-  bench::Correction turn;
-  turn.columns = {bench::Column::kPosition};
-  turn.factor = -1.0;
-  const bench::Bench turned = bench::corrected(bench, {turn}, {});
-  EXPECT_EQ(turned.read_runs(bench::RowFilter(""))[1].recording.q_rad[40], -first[1].recording.q_rad[40]);
-  EXPECT_EQ(bench.read_runs(bench::RowFilter(""))[1].recording.q_rad, first[1].recording.q_rad)
-      << "a correction is of what was read, not of what is kept";
-}
-
-TEST_F(BenchFiles, ThatWereReadInWhateverUnitAreRefusedInTheirOwn) {
-  change([](int, auto c) { return c[0] + "," + c[1] + "," + std::to_string(57.3 * std::stod(c[2]) + 100.0); });
-  bench::Bench whatever_unit = bench::read_bench(folder_);
-  bench::Bench strict = whatever_unit;
-  whatever_unit.other_units = true;
-  EXPECT_NO_THROW(whatever_unit.read_runs(bench::RowFilter("")));
-  EXPECT_THROW(strict.read_runs(bench::RowFilter("")), files::ConfigError);
-}
-
 TEST_F(BenchFiles, WithoutRunsToReadAreRefused) {
   EXPECT_THAT(refusal("repeat == 7"), AllOf(HasSubstr("no run matches"), HasSubstr("repeat == 7")));
 }
