@@ -29,6 +29,27 @@ constexpr double kLightRotor = 0.01;  // of the whole inertia: a lighter rotor m
 constexpr double kLargestFactor = 100.0;
 const double kSenseless = std::log(1e3);  // of a model that diverges: above all real ones
 
+/// Van der Corput sequence: element n in this base, 0..1.
+double halton(std::size_t n, std::size_t base) {
+  double share = 1.0, value = 0.0;
+  for (; n > 0; n /= base) {
+    share /= static_cast<double>(base);
+    value += share * static_cast<double>(n % base);
+  }
+  return value;
+}
+
+/// The first so many points of Halton's sequence; the last coordinate goes through `kinds` values in turn.
+std::vector<std::vector<double>> halton_points(std::size_t count, std::size_t coordinates, std::size_t kinds) {
+  constexpr std::size_t kBases[] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29};
+  std::vector<std::vector<double>> points(count);
+  for (std::size_t n = 0; n < count; ++n) {
+    for (std::size_t i = 0; i < coordinates; ++i) points[n].push_back(halton(n + 1, kBases[i % std::size(kBases)]));
+    points[n].push_back((static_cast<double>(n % kinds) + 0.5) / static_cast<double>(kinds));
+  }
+  return points;
+}
+
 /// The run's start from the recorded trend: noise of its sensor, in the unit of the readings.
 double noise_rad(const calib::SingleJoint& joint) {
   return std::max(1e-7, bench::sensor_noise_rad(joint.run().recording));
@@ -156,7 +177,7 @@ calib::JointModel QuickModel::screened(const std::vector<calib::SingleJoint>& ru
     return sum;
   };
   const std::size_t count = given_ ? std::size(kGains) : kScreened;
-  return model_at(calib::screened(loss, calib::spread_points(count, unknowns.size() + 1, 1), threads_).front().point);
+  return model_at(calib::screened(loss, halton_points(count, unknowns.size(), std::size(kGains)), threads_).front().point);
 }
 
 QuickFit QuickModel::minimised(const std::vector<calib::SingleJoint>& runs, const calib::Unknowns& unknowns,
