@@ -177,7 +177,8 @@ calib::JointModel QuickModel::screened(const std::vector<calib::SingleJoint>& ru
     return sum;
   };
   const std::size_t count = given_ ? std::size(kGains) : kScreened;
-  return model_at(calib::screened(loss, halton_points(count, unknowns.size(), std::size(kGains)), threads_).front().point);
+  return model_at(
+      calib::screened(loss, halton_points(count, unknowns.size(), std::size(kGains)), threads_).front().point);
 }
 
 QuickFit QuickModel::minimised(const std::vector<calib::SingleJoint>& runs, const calib::Unknowns& unknowns,

@@ -131,7 +131,8 @@ TEST_F(PmgCalibrateMotor, RefusesDegreesByNameAndKeptTheyAreOffTheirData) {
   EXPECT_THAT(kept.out, testing::StartsWith("OFF ITS DATA: fault of the data, unit"));
   EXPECT_THAT(test::text_of(out_ / "motor.yaml"), testing::StartsWith("# OFF ITS DATA: "));
   EXPECT_THAT(test::text_of(out_ / "report.html"), testing::Not(HasSubstr("class=\"verdict good\"")));
-  const test::Finished corrected = run({"--also", "coulomb", "--starts", "2", "--data-faults", "correct"});
+  const test::Finished corrected =
+      run({"--also", "coulomb", "--starts", "2", "--data-faults", "correct", "--overwrite"});
   EXPECT_EQ(corrected.exit_code, 0) << corrected.out;
   EXPECT_NEAR(sim::read_motor_file(out_ / "motor.yaml").at("servo").friction.coulomb_Nm, 0.3, 0.03);
 }
