@@ -156,9 +156,9 @@ class FilmTrouble : public Interruption {
       std::ofstream(programs / "ffmpeg") << "#!/bin/sh\n" << script;
       fs::permissions(programs / "ffmpeg", fs::perms::owner_all);
     }
-    const std::string command = "PATH='" + programs.string() + "' '" + pmg::test::program_folder() +
-                                "/pmg_sil' --policy none --scenario '" + scenario(2.0) + "' --video --out '" +
-                                at("run") + "' > '" + at("out") + "' 2> '" + at("err") + "'";
+    const std::string command =
+        "PATH='" + programs.string() + "' '" + pmg::test::program_folder() + "/pmg_sil' --policy none --scenario '" +
+        scenario(2.0) + "' --video --overwrite --out '" + at("run") + "' > '" + at("out") + "' 2> '" + at("err") + "'";
     const int status = std::system(command.c_str());
     err_ = test::text_of(folder_ / "err");
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
