@@ -20,7 +20,7 @@ fs::path asf_beside(const fs::path& amc) {
   fs::path same = amc;
   if (fs::exists(same.replace_extension(".asf"))) return same;
   const std::string stem = amc.stem().string();
-  const fs::path subject = amc.parent_path() / (stem.substr(0, stem.find('_')) + ".asf");
+  fs::path subject = amc.parent_path() / (stem.substr(0, stem.find('_')) + ".asf");
   if (fs::exists(subject)) return subject;
   fs::path only;
   int found = 0;
