@@ -228,7 +228,7 @@ Ride ride(const Scenario& scenario, const RopeAt& rope, const RideOptions& optio
 
 /// A walk at any speed from which a robot is lifted at any phase of the gait.
 struct Lift {
-  double at_s, down_s, end_s;
+  double at_s = 0.0, down_s = 0.0, end_s = 0.0;
   Ride ride;
 };
 
