@@ -1,5 +1,8 @@
 #include "eval_arguments.hpp"
 
+#include <fstream>
+#include <nlohmann/json.hpp>
+
 #include "option_checks.hpp"
 #include "result_folder.hpp"
 
@@ -167,14 +170,32 @@ void declare_jumps(CLI::App& app, EvalArguments& arguments) {
       ->capture_default_str();
 }
 
+const Results kResults = {"an evaluation",
+                          {"report.html", "table1.json", "table2.json", "table3.json", "push.json", "robust.json",
+                           "gait.json", "steady.json", "jumps.json"}};
+
+/// The films that an earlier evaluation's JSON names.
+std::vector<std::filesystem::path> earlier_films(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> films;
+  for (const std::string& name : kResults.names) {
+    std::ifstream file(folder / name);
+    if (!file || std::filesystem::path(name).extension() != ".json") continue;
+    const auto json = nlohmann::json::parse(file, nullptr, false);
+    if (!json.is_object() || !json.contains("films") || !json["films"].is_array()) continue;
+    for (const auto& film : json["films"]) {
+      const std::filesystem::path path = film.is_string() ? film.get<std::string>() : "";
+      if (path == path.filename() && path.extension() == ".mp4") films.push_back(folder / path);
+    }
+  }
+  return films;
+}
+
 }  // namespace
 
 void EvalArguments::make_folder() const {
-  make_result_folder(out,
-                     {"an evaluation",
-                      {"report.html", "table1.json", "table2.json", "table3.json", "push.json", "robust.json",
-                       "gait.json", "steady.json", "jumps.json"}},
-                     overwrite);
+  const std::vector<std::filesystem::path> films = earlier_films(out);
+  make_result_folder(out, kResults, overwrite);
+  for (const std::filesystem::path& film : films) std::filesystem::remove(film);
 }
 
 void EvalArguments::declare(CLI::App& app) {

@@ -107,14 +107,22 @@ struct OneMotor {
   can::Link& link;
 };
 
+/// The buses, which are opened only where the joint is one of the robot's.
+Buses open_for(const Arguments& arguments) {
+  const model::RobotModel robot = model::load_robot(model::find_robot(arguments.robot));
+  if (!robot.joint_index.find(arguments.joint))
+    throw std::invalid_argument(fmt::format("'{}' isn't a joint; {}", arguments.joint,
+                                            files::expected_name(arguments.joint, robot.joint_index.names())));
+  return Buses(arguments.robot);
+}
+
 OneMotor find(Buses& buses, const std::string& joint) {
   for (std::size_t b = 0; b < buses.setup.buses.size(); ++b) {
     for (const drives::MotorSetup& motor : buses.setup.buses[b].motors) {
       if (motor.joint == joint) return {buses.setup.buses[b], motor, *buses.links[b]};
     }
   }
-  throw std::invalid_argument(
-      fmt::format("'{}' isn't a joint; {}", joint, files::expected_name(joint, buses.robot.joint_index.names())));
+  throw std::invalid_argument(fmt::format("{}'s motor is on none of robot.yaml's CAN buses", joint));
 }
 
 /// Waits for the next bus cycle. Cycles that a busy computer missed are not made up for: in a burst no drive could
@@ -128,7 +136,7 @@ std::function<void()> bus_tick() {
 }
 
 int enable(const Arguments& arguments) {
-  Buses buses(arguments.robot);
+  Buses buses = open_for(arguments);
   const OneMotor one = find(buses, arguments.joint);
   const std::function<void()> tick = bus_tick();
   can::FewMotors motor(one.bus, one.motor, one.link, tick);
@@ -150,7 +158,7 @@ int zero(const Arguments& arguments) {
     throw std::invalid_argument(
         "zero overwrites the drive's zero for good; expected --yes when the joint stands at its zero position");
   }
-  Buses buses(arguments.robot);
+  Buses buses = open_for(arguments);
   const OneMotor one = find(buses, arguments.joint);
   const std::function<void()> tick = bus_tick();
   can::FewMotors motor(one.bus, one.motor, one.link, tick);
@@ -280,7 +288,7 @@ struct AtRest {
 };
 
 int wiggle(const Arguments& arguments) {
-  Buses buses(arguments.robot);
+  Buses buses = open_for(arguments);
   const OneMotor one = find(buses, arguments.joint);
   const std::function<void()> tick = bus_tick();
   AtRest rest(buses, one, arguments, tick);
@@ -290,7 +298,7 @@ int wiggle(const Arguments& arguments) {
 }
 
 int level(const Arguments& arguments) {
-  Buses buses(arguments.robot);
+  Buses buses = open_for(arguments);
   const OneMotor one = find(buses, arguments.joint);
   const AtRest rest(buses, one, arguments, bus_tick());
   std::vector<std::string> joints = can::linked_joints(one.bus, one.motor);

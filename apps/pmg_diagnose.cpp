@@ -228,6 +228,8 @@ int diagnose(Arguments arguments) {
     throw std::invalid_argument("expected one BENCH and --out DIR (pmg_diagnose --help shows an example)");
   arguments.bench = arguments.inputs.front();
   apps::expect_unused(arguments.out, kResults, arguments.overwrite);
+  const fs::path next = arguments.out / "next_excitation";
+  diagnosis::expect_no_recordings(next);
   apps::ProgressLine progress;
   const bench::Bench bench = bench::read_bench(arguments.bench);
   diagnosis::DiagnoseOptions options;
@@ -247,6 +249,7 @@ int diagnose(Arguments arguments) {
   progress.clear();
   const Cost cost{.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()};
   apps::make_result_folder(arguments.out, kResults, arguments.overwrite);
+  diagnosis::remove_next_excitation(next);
   nlohmann::ordered_json json = diagnosis::diagnosis_json(found);
   json["wall_s"] = cost.wall_s;
   json["cost"] = {{"cpu_s", cost.used.cpu_s},
@@ -255,9 +258,7 @@ int diagnose(Arguments arguments) {
                   {"steps", cost.simulated.steps}};
   io::write_whole_file(arguments.out / "motor.yaml",
                        sim::motor_yaml({{arguments.joint, found.after.actuator}}, remarks(found, bench)));
-  if (found.next_excitation) {
-    diagnosis::write_next_excitation(arguments.out / "next_excitation", bench, *found.next_excitation);
-  }
+  if (found.next_excitation) diagnosis::write_next_excitation(next, bench, *found.next_excitation);
   io::write_whole_file(arguments.out / "report.html",
                        diagnosis_page::page_of(bench, found, runs, arguments.threads).html());
   io::write_whole_file(arguments.out / "diagnosis.json", json.dump(2) + "\n");

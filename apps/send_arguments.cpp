@@ -61,8 +61,10 @@ void declare(CLI::App& app, SendArguments& arguments) {
   app.add_option("--lcm-url", arguments.lcm_url,
                  fmt::format("LCM address; LCM_DEFAULT_URL or {} if not given", io::kDefaultLcmUrl));
   app.add_option("--keys", arguments.keys, "folder of this operator's keys; ~/.config/pmg/operator-keys if not given");
-  app.add_option("--timeout", arguments.timeout_s,
-                 "give up after so long [s]; stop, damping, passive, reset 2, lift, lower 15, others 10")
+  app.add_option(
+         "--timeout", arguments.timeout_s,
+         "give up after so long [s]; stop, damping, passive, reset 2, lift, lower 60, others 10; a robot that is on a\n"
+         "simulation's hoist first gets six times as long to come down")
       ->check(positive());
   app.add_flag("--json", arguments.json, "print the outcome as JSON");
   for (const SendRequest& request : kSendRequests) app.add_subcommand(request.name, request.help)->fallthrough();

@@ -45,7 +45,6 @@ Tick::Tick(const model::RobotModel& robot, const ClipLibrary& library, std::uniq
       gains_(gains_in_force(robot, *policy, guard_)),
       brake_kd_(own_gains(robot).kd_Nm_s_per_rad),
       motion_(robot, library, policy->variant(), options.generator, options.gco),
-      velocity_trim_(robot, options.velocity_trim, options.dt_s),
       policy_(std::move(policy)),
       supervisor_(robot, options.supervisor),
       entry_(options.entry),
@@ -64,6 +63,8 @@ Tick::Tick(const model::RobotModel& robot, const ClipLibrary& library, std::uniq
     values->setZero(robot.joint_index.size());
   }
   result_.reference = motion_.reference();
+  if (motion_.variant() == Variant::kPmg && options.velocity_trim.gain_per_s > 0.0)
+    velocity_trim_.emplace(robot, options.velocity_trim, options.generator.double_support_rate, options.dt_s);
   if (policy_->needs_ground()) feet_.emplace(robot, options.foot_load, options.dt_s);
   if (options.arms) arms_.emplace(robot, *options.arms, options.dt_s);
   result_.arms.there = arms_.has_value();
@@ -277,7 +278,7 @@ faults::Fault Tick::judge_first_step() noexcept {
 
 void Tick::reset_motion() noexcept {
   motion_.reset();
-  velocity_trim_.reset();
+  if (velocity_trim_) velocity_trim_->reset();
 }
 
 void Tick::enter_stand(const model::RobotState& state) noexcept {
@@ -352,7 +353,7 @@ void Tick::excite_joint(model::JointCommand& command) noexcept {
 faults::Fault Tick::make_reference(const model::RobotState& state) noexcept {
   const io::Lap generator(stopwatch_);
   const bool walks = supervisor_.mode() == Mode::kWalk && runs_policy(result_.maker);
-  motion_.set_correction(velocity_trim_.step(state, result_.user, motion_.reference(), walks));
+  if (velocity_trim_) motion_.set_correction(velocity_trim_->step(state, result_.user, motion_.reference(), walks));
   result_.reference = motion_.advance(result_.user, dt_s_);
   if (spoiler_ != nullptr) spoiler_->spoil(result_.reference);
   result_.times.generator_ns = generator.elapsed_ns();

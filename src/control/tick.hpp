@@ -208,7 +208,7 @@ class Tick {
   policy::DriveGains gains_;
   JointVector brake_kd_;
   gco::MotionComposition motion_;
-  VelocityTrim velocity_trim_;
+  std::optional<VelocityTrim> velocity_trim_;  // nothing: the policy doesn't observe what is asked of its clips
   std::unique_ptr<policy::Policy> policy_;
   CommandIntake intake_;
   Supervisor supervisor_;

@@ -5,8 +5,13 @@
 
 namespace pmg::control {
 
-VelocityTrim::VelocityTrim(const model::RobotModel& robot, const VelocityTrimOptions& options, double dt_s)
-    : options_(options), dt_s_(dt_s), odometry_(robot), limits_(robot.command_limits) {
+VelocityTrim::VelocityTrim(const model::RobotModel& robot, const VelocityTrimOptions& options,
+                           double double_support_rate, double dt_s)
+    : options_(options),
+      double_support_rate_(double_support_rate),
+      dt_s_(dt_s),
+      odometry_(robot),
+      limits_(robot.command_limits) {
   for (std::size_t c = 0; c < kVelocityChannels; ++c)
     range_[c] = std::max(robot.command_limits.upper[c], -robot.command_limits.lower[c]);
 }
@@ -29,14 +34,14 @@ const std::array<double, kVelocityChannels>& VelocityTrim::step(const model::Rob
   for (std::size_t c = 0; c < kVelocityChannels; ++c) {
     if (range_[c] > 0.0) commanded += std::abs(taken.u[c]) / range_[c];
   }
-  if (walks && commanded > 0.0 && options_.gain_per_s > 0.0) {
+  if (walks && commanded > 0.0) {
     learn(state, user, taken, reference.contact_weight);
   } else {
     forget();
   }
   const double share = std::min(1.0, commanded / options_.full_above_share);
   const double both_carry = reference.contact_weight[kLeft] * reference.contact_weight[kRight];
-  const double rate_per_s = kMostRate_per_s * (1.0 + (kDoubleSupportRate - 1.0) * both_carry);
+  const double rate_per_s = kMostRate_per_s * (1.0 + (double_support_rate_ - 1.0) * both_carry);
   for (std::size_t c = 0; c < kVelocityChannels; ++c) {
     const double most = rate_per_s * range_[c] * dt_s_;
     correction_[c] += std::clamp(share * trim_[c] - correction_[c], -most, most);

@@ -32,7 +32,10 @@ struct VelocityTrimOptions {
 /// A walking robot sways by more than it is missing: its velocity is smoothed before a bound may bend its mean.
 class VelocityTrim {
  public:
-  VelocityTrim(const model::RobotModel& robot, const VelocityTrimOptions& options, double dt_s);
+  /// double_support_rate: a correction changes the slower where both feet carry, as the generator's commands do
+  /// (GeneratorOptions).
+  VelocityTrim(const model::RobotModel& robot, const VelocityTrimOptions& options, double double_support_rate,
+               double dt_s);
 
   /// Nothing is added, from now: for a motion that is itself reset.
   void reset() noexcept;
@@ -45,8 +48,6 @@ class VelocityTrim {
 
  private:
   static constexpr double kMostRate_per_s = 1.0;  ///< of a correction, in ranges
-  static constexpr double kDoubleSupportRate =
-      0.15;  ///< of it where both feet carry, as the generator's: they slip less
 
   void learn(const model::RobotState& state, const Command& user, const Command& taken,
              const PerFoot<double>& weight) noexcept;
@@ -54,7 +55,7 @@ class VelocityTrim {
   void forget() noexcept;
 
   VelocityTrimOptions options_;
-  double dt_s_;
+  double double_support_rate_, dt_s_;
   LegOdometry odometry_;
   CommandLimits limits_;
   std::array<double, kVelocityChannels> range_{}, lagged_{}, measured_{}, trim_{}, correction_{};

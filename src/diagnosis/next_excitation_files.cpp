@@ -57,10 +57,18 @@ std::string text_of(const fs::path& file) {
 
 }  // namespace
 
-void write_next_excitation(const fs::path& folder, const bench::Bench& bench, const NextExcitation& next) {
+void expect_no_recordings(const fs::path& folder) {
   if (fs::exists(folder / "runs"))
     throw std::runtime_error(folder.string() + " holds recordings already; expected a folder without runs/");
-  fs::remove_all(folder / "commands");
+}
+
+void remove_next_excitation(const fs::path& folder) {
+  expect_no_recordings(folder);
+  fs::remove_all(folder);
+}
+
+void write_next_excitation(const fs::path& folder, const bench::Bench& bench, const NextExcitation& next) {
+  remove_next_excitation(folder);
   fs::create_directories(folder / "commands");
   for (const NextRun& run : next.runs) {
     io::write_whole_file(folder / "commands" / (run.name + ".csv"), command_csv(bench, run));

@@ -83,6 +83,17 @@ TEST_F(ResultFolder, EveryProgramKeepsWhatAnEarlierOneFound) {
   expect_refused("pmg_log export " + log + " --csv DIR", "STATE.csv", "an export");
 }
 
+TEST_F(ResultFolder, AnEvaluationThatReplacesAnotherRemovesTheFilmsThatItNames) {
+  const fs::path folder = used("jumps.json");
+  std::ofstream(folder / "jumps.json") << R"({"films": ["pmg.mp4", "../mine.mp4", "log.lcm", 3]})";
+  for (const char* name : {"pmg.mp4", "mine.mp4", "log.lcm", "../mine.mp4"}) std::ofstream(folder / name) << "a film";
+  const test::Finished replaced =
+      run("pmg_eval jumps --nominal --policy none --seeds 1 --duration 1 --overwrite --out " + folder.string());
+  EXPECT_LE(replaced.exit_code, 1) << replaced.err;
+  EXPECT_FALSE(fs::exists(folder / "pmg.mp4"));
+  for (const char* name : {"mine.mp4", "log.lcm", "../mine.mp4"}) EXPECT_TRUE(fs::exists(folder / name)) << name;
+}
+
 TEST_F(ResultFolder, AnExportNeverReplacesALogAndAFileOnlyWhereAsked) {
   fs::copy("test/data/logs/walk_fault_reset.lcm", at("log.lcm"));
   const std::string before = test::text_of(at("log.lcm"));

@@ -74,6 +74,10 @@ TEST(LegOdometry, InTheAirAndOfABrokenStateThereIsNone) {
   EXPECT_FALSE(odometry.velocity_H(state, {1.0, 0.0}).has_value());
 }
 
+VelocityTrim trim_of(const VelocityTrimOptions& options) {
+  return {z1(), options, GeneratorOptions{}.double_support_rate, test::kTick_s};
+}
+
 /// A robot that does this share of what is asked of its clips, for so long: (the trim, what is asked of its clips).
 struct Trimmed {
   std::array<double, kVelocityChannels> correction{};
@@ -96,7 +100,7 @@ Trimmed lame(VelocityTrim& trim, PerfectWalker& walker, const Command& user, dou
 }
 
 TEST(VelocityTrim, ARobotThatDoesAFifthTooLittleComesToDoWhatItIsAskedFor) {
-  VelocityTrim trim(z1(), {}, test::kTick_s);
+  VelocityTrim trim = trim_of({});
   PerfectWalker walker;
   const Command user{{0.4}};
   lame(trim, walker, user, 0.85, 12.0);
@@ -105,14 +109,14 @@ TEST(VelocityTrim, ARobotThatDoesAFifthTooLittleComesToDoWhatItIsAskedFor) {
   EXPECT_GT(walker.reference().command[kVx], 0.45) << "the policy observes what its clips are asked for";
   EXPECT_FALSE(walker.reference().command_limited);
 
-  VelocityTrim none(z1(), {.gain_per_s = 0.0}, test::kTick_s);
+  VelocityTrim none = trim_of({.gain_per_s = 0.0});
   PerfectWalker untrimmed;
   lame(none, untrimmed, user, 0.85, 12.0);
   EXPECT_LT(lame(none, untrimmed, user, 0.85, 4.0).does[kVx], 0.36);
 }
 
 TEST(VelocityTrim, IsBoundedAndOfWhatIsNoLongerAskedNothingIsKept) {
-  VelocityTrim trim(z1(), {}, test::kTick_s);
+  VelocityTrim trim = trim_of({});
   PerfectWalker walker;
   lame(trim, walker, {{0.4}}, 0.85, 8.0);
   const double learnt = lame(trim, walker, {{0.4}}, -3.0, 0.5).correction[kVx];
@@ -125,7 +129,7 @@ TEST(VelocityTrim, IsBoundedAndOfWhatIsNoLongerAskedNothingIsKept) {
 }
 
 TEST(VelocityTrim, FadesWithoutAJumpWhereNoPolicyWalks) {
-  VelocityTrim trim(z1(), {}, test::kTick_s);
+  VelocityTrim trim = trim_of({});
   PerfectWalker walker;
   double before = lame(trim, walker, {{0.4}}, 0.8, 8.0).correction[kVx];
   EXPECT_GT(before, 0.03);

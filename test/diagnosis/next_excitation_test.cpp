@@ -177,6 +177,12 @@ TEST(NextExcitation, IsWrittenAsWhatCanBePlayedAndAppended) {
   EXPECT_EQ(bench::read_bench(folder / "next").runs.header, bench.runs.header);
   fs::create_directories(folder / "next" / "runs");
   EXPECT_THROW(write_next_excitation(folder / "next", bench, *found.next), std::runtime_error);
+  EXPECT_THROW(expect_no_recordings(folder / "next"), std::runtime_error);
+  EXPECT_THROW(remove_next_excitation(folder / "next"), std::runtime_error);
+  EXPECT_TRUE(fs::exists(folder / "next" / "runs.csv")) << "somebody's recordings keep what they were asked by";
+  fs::remove(folder / "next" / "runs");
+  remove_next_excitation(folder / "next");
+  EXPECT_FALSE(fs::exists(folder / "next"));
   fs::remove_all(folder);
 }
 

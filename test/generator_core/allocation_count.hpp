@@ -8,3 +8,7 @@ namespace pmg::test {
 long allocation_count() noexcept;
 
 }  // namespace pmg::test
+
+/// First in a test that counts.
+#define PMG_SKIP_IF_HEAP_IS_NOT_COUNTED() \
+  if (pmg::test::allocation_count() < 0) GTEST_SKIP() << "a sanitizer's malloc isn't counted"

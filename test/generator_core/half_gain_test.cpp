@@ -169,7 +169,7 @@ TEST(HalfGain, NeverMakesAJointJump) {
 
 /// Also where the command is scaled down, which takes the longest.
 TEST(HalfGain, IsPlayedWithoutTheHeap) {
-  if (allocation_count() < 0) GTEST_SKIP() << "a sanitizer owns malloc";
+  PMG_SKIP_IF_HEAP_IS_NOT_COUNTED();
   Generator generator(library_with_little_room(), make_options());
   generator.step(make_command(0.4, 0.1, 0), kDt_s);
   const long before = allocation_count();

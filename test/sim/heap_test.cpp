@@ -11,7 +11,7 @@ namespace pmg {
 namespace {
 
 TEST(Heap, StepAndReadDontAllocate) {
-  if (test::allocation_count() < 0) GTEST_SKIP() << "a sanitizer owns malloc";
+  PMG_SKIP_IF_HEAP_IS_NOT_COUNTED();
   sim::WorldOptions options;
   options.encoder_noise_rad = options.gyro_noise_rad_s = options.orientation_noise_rad = 0.001;
   sim::World world(z1(), options);

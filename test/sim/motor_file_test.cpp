@@ -157,7 +157,7 @@ TEST_F(MotorFile, MakesTheSimulatedDriveLate) {
 }
 
 TEST_F(MotorFile, CostsAWorldNoHeap) {
-  if (test::allocation_count() < 0) GTEST_SKIP() << "a sanitizer's malloc isn't counted";
+  PMG_SKIP_IF_HEAP_IS_NOT_COUNTED();
   WorldOptions options = on_gantry();
   options.motors[joint_].friction = {.coulomb_Nm = 0.5, .load_driving = 0.2};
   World world(robot_, options);

@@ -235,7 +235,7 @@ TEST_F(ResidualTorqueFile, IsRefusedWithPlaceAndReason) {
 }
 
 TEST(ResidualTorque, CostsNoHeap) {
-  if (test::allocation_count() < 0) GTEST_SKIP() << "a sanitizer's malloc isn't counted";
+  PMG_SKIP_IF_HEAP_IS_NOT_COUNTED();
   Joint joint(curve(ResidualQuantity::kBend, -0.1, 0.1, {0.5, 0.0, -0.5}));
   const long before = test::allocation_count();
   for (int k = 0; k < 20; ++k) joint.move({.q_rad = 0.3, .kp = 5.0});
