@@ -9,135 +9,159 @@ namespace pmg::faults {
 
 namespace {
 
-struct Wording {
-  const char* name;
-  const char* unit;
-  const char* cause;           // with {joint}, {value}, {limit}, {beyond} = |value - limit|
-  const char* cause_no_value;  // when no joint, or no number, can be named; null: the same
+struct Row {
+  FaultCode code;  // the row's own place in the table
+  const char *name, *unit;
+  const char* cause;                     // with {joint}, {value}, {limit}, {beyond} = |value - limit|
+  const char* cause_no_value = nullptr;  // when no joint, or no number, can be named; null: the same
   const char* advice;
+  CycleRange first;  // when the drives damp, or where the robot may sit down first, when that begins
+  bool sit_down = false, policy_is_sound = false;
 };
 
-constexpr std::array<Wording, kFaultCodes> kWordings = {{
-    {"none", "", "nothing is wrong", nullptr, ""},
-    {"bus_lost", "", "the drives don't answer any more", nullptr,
-     "Look at the drives' power and the bus wiring; the drives' own watchdogs must have stopped them."},
-    {"stale_state", "s", "no news from the drives for {value:.3f} s, limit {limit:.3f} s", nullptr,
-     "Look at the bus: drives that answer late or a bus thread that does not run."},
-    {"state_not_finite", "", "{joint} reports a value that is no number",
-     "the state is incomplete, or the IMU reports what is no number or no orientation",
-     "Look at the encoder, torque sensor or IMU that is named in the log's last STATE."},
-    {"temperature", "degC", "{joint}'s drive has {value:.1f} degC, limit {limit:.1f} degC",
-     "{joint}'s drive reports no temperature", "Let the drive cool down; look at what it had to hold."},
-    {"control_frozen", "", "the control thread gave no command for too long; the bus damped the drives meanwhile",
-     nullptr, "Look at what else ran on the computer, and at what real-time scheduling was refused at the start."},
-    {"command_not_finite", "", "the control thread gave a command that was no number; the bus damped the drives",
-     nullptr, "A defect of the controller: keep the log and report it."},
-    {"stale_policy", "", "the policy gave no result in time, several ticks in a row", nullptr,
-     "Look at the policy's times in TIMING: too large a network, or a computer that is too busy."},
-    {"overrun", "s", "several ticks in a row ended behind their deadline, the last one by {value:.4f} s", nullptr,
-     "Look at the stages' times in TIMING, and at what else ran on the computer."},
-    {"joint_limit", "rad", "{joint} is at {value:.3f} rad, {beyond:.3f} rad beyond its range", nullptr,
-     "Bring the joint back into its range by hand; look at its zero and at what drove it there."},
-    {"joint_velocity", "rad/s", "{joint} moves at {value:.2f} rad/s, limit {limit:.2f} rad/s", nullptr,
-     "Look at the joint's encoder, its gains and what it hit."},
-    {"joint_torque", "Nm", "{joint} gives {value:.1f} Nm, limit {limit:.1f} Nm", nullptr,
-     "Look at what the joint pushed against."},
-    {"tilt", "rad", "the IMU's link leans {value:.2f} rad from upright, limit {limit:.2f} rad", nullptr,
-     "The robot fell or was tipped: put it upright before the reset, a simulated one by pmg_send lift."},
-    {"torso_attitude", "rad", "the torso leans {value:.2f} rad away from what was commanded, limit {limit:.2f} rad",
-     nullptr,
-     "The robot lost its balance or was held: put it upright before it stands again, a simulated one by pmg_send "
-     "lift."},
-    {"reference_not_finite", "", "the motion generator or the ground-aware optimisation gave what is no number",
-     nullptr, "A defect of the clip library or the controller: keep the log and report it."},
-    {"policy_not_finite", "", "the policy failed, or gave a target that is no number", nullptr,
-     "Walk without this policy; keep the log and report it."},
-    {"action_out_of_range", "rad",
-     "the policy pulls {joint} {value:.2f} rad away from its reference, limit {limit:.2f} rad", nullptr,
-     "The robot is not in a state that the policy was trained for, or it is the wrong policy."},
-}};
+constexpr CycleRange kAtOnce{1, 5}, kThreeTicks{11, 15};
 
-const Wording& wording(FaultCode code) noexcept { return kWordings[static_cast<std::size_t>(code)]; }
+constexpr std::array<Row, kFaultCodes> kRows = {{
+    {.code = FaultCode::kNone, .name = "none", .unit = "", .cause = "nothing is wrong", .advice = "", .first = {}},
+    {.code = FaultCode::kBusLost,
+     .name = "bus_lost",
+     .unit = "",
+     .cause = "the drives don't answer any more",
+     .advice = "Look at the drives' power and the bus wiring; the drives' own watchdogs must have stopped them.",
+     .first = kAtOnce},
+    {.code = FaultCode::kStaleState,
+     .name = "stale_state",
+     .unit = "s",
+     .cause = "no news from the drives for {value:.3f} s, limit {limit:.3f} s",
+     .advice = "Look at the bus: drives that answer late or a bus thread that does not run.",
+     .first = {16, 20}},
+    {.code = FaultCode::kStateNotFinite,
+     .name = "state_not_finite",
+     .unit = "",
+     .cause = "{joint} reports a value that is no number",
+     .cause_no_value = "the state is incomplete, or the IMU reports what is no number or no orientation",
+     .advice = "Look at the encoder, torque sensor or IMU that is named in the log's last STATE.",
+     .first = kAtOnce},
+    {.code = FaultCode::kTemperature,
+     .name = "temperature",
+     .unit = "degC",
+     .cause = "{joint}'s drive has {value:.1f} degC, limit {limit:.1f} degC",
+     .cause_no_value = "{joint}'s drive reports no temperature",
+     .advice = "Let the drive cool down; look at what it had to hold.",
+     .first = kAtOnce,
+     .sit_down = true,
+     .policy_is_sound = true},
+    {.code = FaultCode::kControlFrozen,
+     .name = "control_frozen",
+     .unit = "",
+     .cause = "the control thread gave no command for too long; the bus damped the drives meanwhile",
+     .advice = "Look at what else ran on the computer, and at what real-time scheduling was refused at the start.",
+     .first = {22, 26}},
+    {.code = FaultCode::kCommandNotFinite,
+     .name = "command_not_finite",
+     .unit = "",
+     .cause = "the control thread gave a command that was no number; the bus damped the drives",
+     .advice = "A defect of the controller: keep the log and report it.",
+     .first = {0, 0}},
+    {.code = FaultCode::kStalePolicy,
+     .name = "stale_policy",
+     .unit = "",
+     .cause = "the policy gave no result in time, several ticks in a row",
+     .advice = "Look at the policy's times in TIMING: too large a network, or a computer that is too busy.",
+     .first = kThreeTicks,
+     .sit_down = true},
+    {.code = FaultCode::kOverrun,
+     .name = "overrun",
+     .unit = "s",
+     .cause = "several ticks in a row ended behind their deadline, the last one by {value:.4f} s",
+     .advice = "Look at the stages' times in TIMING, and at what else ran on the computer.",
+     .first = {18, 22},
+     .sit_down = true,
+     .policy_is_sound = true},
+    {.code = FaultCode::kJointLimit,
+     .name = "joint_limit",
+     .unit = "rad",
+     .cause = "{joint} is at {value:.3f} rad, {beyond:.3f} rad beyond its range",
+     .advice = "Bring the joint back into its range by hand; look at its zero and at what drove it there.",
+     .first = kThreeTicks},
+    {.code = FaultCode::kJointVelocity,
+     .name = "joint_velocity",
+     .unit = "rad/s",
+     .cause = "{joint} moves at {value:.2f} rad/s, limit {limit:.2f} rad/s",
+     .advice = "Look at the joint's encoder, its gains and what it hit.",
+     .first = kThreeTicks},
+    {.code = FaultCode::kJointTorque,
+     .name = "joint_torque",
+     .unit = "Nm",
+     .cause = "{joint} gives {value:.1f} Nm, limit {limit:.1f} Nm",
+     .advice = "Look at what the joint pushed against.",
+     .first = kThreeTicks,
+     .sit_down = true,
+     .policy_is_sound = true},
+    {.code = FaultCode::kTilt,
+     .name = "tilt",
+     .unit = "rad",
+     .cause = "the IMU's link leans {value:.2f} rad from upright, limit {limit:.2f} rad",
+     .advice = "The robot fell or was tipped: put it upright before the reset, a simulated one by pmg_send lift.",
+     .first = kThreeTicks},
+    {.code = FaultCode::kTorsoAttitude,
+     .name = "torso_attitude",
+     .unit = "rad",
+     .cause = "the torso leans {value:.2f} rad away from what was commanded, limit {limit:.2f} rad",
+     .advice = "The robot lost its balance or was held: put it upright before it stands again, a simulated one by "
+               "pmg_send lift.",
+     .first = kThreeTicks},
+    {.code = FaultCode::kReferenceNotFinite,
+     .name = "reference_not_finite",
+     .unit = "",
+     .cause = "the motion generator or the ground-aware optimisation gave what is no number",
+     .advice = "A defect of the clip library or the controller: keep the log and report it.",
+     .first = kAtOnce,
+     .sit_down = true,
+     .policy_is_sound = true},
+    {.code = FaultCode::kPolicyNotFinite,
+     .name = "policy_not_finite",
+     .unit = "",
+     .cause = "the policy failed, or gave a target that is no number",
+     .advice = "Walk without this policy; keep the log and report it.",
+     .first = kAtOnce,
+     .sit_down = true},
+    {.code = FaultCode::kActionOutOfRange,
+     .name = "action_out_of_range",
+     .unit = "rad",
+     .cause = "the policy pulls {joint} {value:.2f} rad away from its reference, limit {limit:.2f} rad",
+     .advice = "The robot is not in a state that the policy was trained for, or it is the wrong policy.",
+     .first = {96, 100}},
+}};
+static_assert([] {
+  for (std::size_t i = 0; i < kRows.size(); ++i)
+    if (static_cast<std::size_t>(kRows[i].code) != i) return false;
+  return true;
+}());
+
+const Row& row(FaultCode code) noexcept { return kRows[static_cast<std::size_t>(code)]; }
 
 }  // namespace
 
-bool allows_sit_down(FaultCode code) noexcept {
-  switch (code) {
-    case FaultCode::kTemperature:
-    case FaultCode::kStalePolicy:
-    case FaultCode::kOverrun:
-    case FaultCode::kJointTorque:
-    case FaultCode::kReferenceNotFinite:
-    case FaultCode::kPolicyNotFinite:
-      return true;
-    case FaultCode::kNone:
-    case FaultCode::kBusLost:
-    case FaultCode::kStaleState:
-    case FaultCode::kStateNotFinite:
-    case FaultCode::kControlFrozen:
-    case FaultCode::kCommandNotFinite:
-    case FaultCode::kJointLimit:
-    case FaultCode::kJointVelocity:
-    case FaultCode::kTilt:
-    case FaultCode::kTorsoAttitude:
-    case FaultCode::kActionOutOfRange:
-      return false;
-  }
-  return false;
-}
+bool allows_sit_down(FaultCode code) noexcept { return row(code).sit_down; }
 
-bool policy_is_sound_after(FaultCode code) noexcept {
-  return code == FaultCode::kTemperature || code == FaultCode::kOverrun || code == FaultCode::kJointTorque ||
-         code == FaultCode::kReferenceNotFinite;
-}
+bool policy_is_sound_after(FaultCode code) noexcept { return row(code).policy_is_sound; }
 
 Reaction reaction(FaultCode code) noexcept {
-  static constexpr CycleRange kNever{}, kAtOnce{1, 5}, kThreeTicks{11, 15};
-  const auto at_once = [](const CycleRange& damping) { return Reaction{kNever, damping}; };
-  const auto after_sit_down = [](const CycleRange& found) {
-    constexpr int kSitDown = 500;  // SitDownOptions: 1 s
-    return Reaction{found, {found.least + kSitDown, found.most + kSitDown}};
-  };
-  switch (code) {
-    case FaultCode::kNone:
-      return {};
-    case FaultCode::kBusLost:
-    case FaultCode::kStateNotFinite:
-      return at_once(kAtOnce);
-    case FaultCode::kStaleState:
-      return at_once({16, 20});
-    case FaultCode::kTemperature:
-    case FaultCode::kReferenceNotFinite:
-    case FaultCode::kPolicyNotFinite:
-      return after_sit_down(kAtOnce);
-    case FaultCode::kControlFrozen:
-      return at_once({22, 26});
-    case FaultCode::kCommandNotFinite:
-      return at_once({0, 0});
-    case FaultCode::kStalePolicy:
-    case FaultCode::kJointTorque:
-      return after_sit_down(kThreeTicks);
-    case FaultCode::kOverrun:
-      return after_sit_down({18, 22});
-    case FaultCode::kJointLimit:
-    case FaultCode::kJointVelocity:
-    case FaultCode::kTilt:
-    case FaultCode::kTorsoAttitude:
-      return at_once(kThreeTicks);
-    case FaultCode::kActionOutOfRange:
-      return at_once({96, 100});
-  }
-  return {};
+  constexpr int kSitDown = 500;  // SitDownOptions: 1 s
+  const CycleRange first = row(code).first;
+  if (!row(code).sit_down) return {{}, first};
+  return {first, {first.least + kSitDown, first.most + kSitDown}};
 }
 
-const char* to_string(FaultCode code) noexcept { return wording(code).name; }
+const char* to_string(FaultCode code) noexcept { return row(code).name; }
 
-const char* unit(FaultCode code) noexcept { return wording(code).unit; }
+const char* unit(FaultCode code) noexcept { return row(code).unit; }
 
-const char* advice(FaultCode code) noexcept { return wording(code).advice; }
+const char* advice(FaultCode code) noexcept { return row(code).advice; }
 
 std::string describe(const Fault& fault, const model::RobotModel& robot) {
-  const Wording& words = wording(fault.code);
+  const Row& words = row(fault.code);
   const bool joint_missing = fault.code == FaultCode::kStateNotFinite && fault.joint < 0;
   const bool other_words = words.cause_no_value != nullptr && (joint_missing || !std::isfinite(fault.value));
   const std::string joint = fault.joint >= 0 ? robot.joint_index.name(fault.joint) : "a joint";

@@ -10,7 +10,8 @@
 
 namespace pmg::faults {
 
-/// When one tick finds several faults, the first one in this order is the cause.
+/// When one tick finds several faults, the first one in this order is the cause. What each means and leads to is a row
+/// of fault.cpp.
 enum class FaultCode : std::uint8_t {
   kNone = 0,
   kBusLost,
@@ -29,8 +30,9 @@ enum class FaultCode : std::uint8_t {
   kReferenceNotFinite,
   kPolicyNotFinite,
   kActionOutOfRange,
+  kNoMore  ///< their number
 };
-inline constexpr std::size_t kFaultCodes = 17;
+inline constexpr auto kFaultCodes = static_cast<std::size_t>(FaultCode::kNoMore);
 
 /// One detected fault. value and limit are in the unit of its code.
 struct Fault {
