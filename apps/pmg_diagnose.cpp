@@ -175,8 +175,7 @@ void print_summary(const diagnosis::Diagnosis& found, const bench::Bench& bench,
     if (!cause.same_here.empty())
       std::cout << fmt::format("    which on this rig is the same as {}\n", fmt::join(cause.same_here, ", "));
     for (const evidence::ParameterEstimate& p : cause.parameters) {
-      std::cout << fmt::format("    {} = {:.4g} ({:.4g} to {:.4g}) {}\n", p.name, p.estimate.value, p.estimate.low,
-                               p.estimate.high, p.unit);
+      std::cout << fmt::format("    {} = {}\n", p.name, evidence::text_of(p.estimate, p.unit, 4));
     }
   }
   for (const assembly::Variation& one : found.assemblies.varies) std::cout << "  " << assembly::sentence(one) << '\n';

@@ -79,8 +79,7 @@ void show_gain(pages::Page& page, const bench::Bench& bench, const Diagnosis& di
 std::string parameter_lines(const Cause& cause) {
   std::string text;
   for (const evidence::ParameterEstimate& p : cause.parameters) {
-    text += fmt::format("{}{} = {:.4g} ({:.4g} to {:.4g}) {}", text.empty() ? "" : "; ", p.name, p.estimate.value,
-                        p.estimate.low, p.estimate.high, p.unit);
+    text += fmt::format("{}{} = {}", text.empty() ? "" : "; ", p.name, evidence::text_of(p.estimate, p.unit, 4));
   }
   return text;
 }

@@ -145,7 +145,7 @@ void show_checks(pages::Page& page, const Diagnosis& diagnosis, const DiagnosedR
     const evidence::Interval& v = check.value;
     table.rows.push_back(
         {effects::title(check.effect), words(check.agreement), beside_the_result(check, diagnosis, runs), check.check,
-         std::isfinite(v.value) ? fmt::format("{:.3g} ({:.3g} to {:.3g}) {}", v.value, v.low, v.high, check.unit) : "",
+         std::isfinite(v.value) ? evidence::text_of(v, check.unit, 3) : "",
          check.sentence});
   }
   page.table(table);

@@ -1,5 +1,7 @@
 #include "evidence/verdict.hpp"
 
+#include <fmt/format.h>
+
 namespace pmg::evidence {
 
 const char* name(Verdict verdict) {
@@ -16,6 +18,11 @@ const char* name(Verdict verdict) {
       break;
   }
   return "interrupted";
+}
+
+std::string text_of(const Interval& interval, const std::string& unit, int digits) {
+  return fmt::format("{:.{}g} ({:.{}g} to {:.{}g}){}{}", interval.value, digits, interval.low, digits, interval.high,
+                     digits, unit.empty() ? "" : " ", unit);
 }
 
 }  // namespace pmg::evidence

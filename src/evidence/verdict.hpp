@@ -29,4 +29,7 @@ struct ParameterEstimate {
   std::string unit;
 };
 
+/// "0.1016 (0.07796 to 0.1053) rad", with so many significant digits.
+std::string text_of(const Interval& interval, const std::string& unit, int digits);
+
 }  // namespace pmg::evidence

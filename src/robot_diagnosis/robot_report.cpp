@@ -110,8 +110,7 @@ std::string robot_diagnosis_text(const RobotDiagnosis& d) {
                         cause.log_evidence, cause.folds_better, cause.folds,
                         cause.or_instead.empty() ? "" : fmt::format("; or {}", fmt::join(cause.or_instead, ", ")));
     for (const evidence::ParameterEstimate& p : cause.parameters) {
-      text += fmt::format("    {} = {:.4g} ({:.4g} to {:.4g}) {}\n", p.name, p.estimate.value, p.estimate.low,
-                          p.estimate.high, p.unit);
+      text += fmt::format("    {} = {}\n", p.name, evidence::text_of(p.estimate, p.unit, 4));
     }
   }
   text += ground_text(d.ground) + "\n";
