@@ -13,10 +13,14 @@ void DriveCatalogue::add(const std::string& protocol, Read read) {
   }
 }
 
-DriveKind DriveCatalogue::read(files::ConfigReader reader) const {
+std::vector<std::string> DriveCatalogue::protocols() const {
   std::vector<std::string> names;
   for (const auto& known : read_) names.push_back(known.first);
-  const std::string name = reader.one_of("protocol", names);
+  return names;
+}
+
+DriveKind DriveCatalogue::read(files::ConfigReader reader) const {
+  const std::string name = reader.one_of("protocol", protocols());
   const auto known = std::ranges::find(read_, name, &std::pair<std::string, Read>::first);
   DriveKind kind = known->second(reader);
   reader.finish();

@@ -17,6 +17,7 @@ class DriveCatalogue {
   /// One more, or another meaning of a name. read: makes a kind from an entry of `drives`; it asks for every key it
   /// knows besides `protocol`.
   void add(const std::string& protocol, Read read);
+  std::vector<std::string> protocols() const;  ///< the names, in the order in which they came
   /// One entry of `drives`. Throws files::ConfigError.
   DriveKind read(files::ConfigReader reader) const;
 

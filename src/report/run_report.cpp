@@ -155,6 +155,8 @@ void chart_of_runs(pages::Page& page, const Runs& runs, const std::string& title
     for (RunLine& line : lines_of(i)) {
       if (line.x.empty()) continue;
       line.name += suffix(runs, i);
+      if (line.x.size() != line.y.size())
+        throw std::logic_error(title + ", " + line.name + ": thinned unlike its times");
       drawn.push_back(std::move(line));
     }
   }

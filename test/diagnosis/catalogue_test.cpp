@@ -3,11 +3,16 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <set>
+#include <sstream>
+#include <string>
 
 #include "calib/synthetic_bench.hpp"
 #include "calib/unknown.hpp"
+#include "folders.hpp"
 #include "generated_table.hpp"
+#include "model/actuator_parameters.hpp"
 
 namespace pmg::diagnosis {
 namespace {
@@ -57,6 +62,43 @@ TEST(Catalogue, EveryFormIsInTheDocumentationWithItsSource) {
     }
   }
   test::expect_table("reference/effects.md", "| effect | form | in words | parameters | source |", rows);
+}
+
+/// From one line of the page to another.
+std::string part_of_page(const std::string& from, const std::string& to) {
+  std::ostringstream text;
+  text << std::ifstream(test::project_folder() + "/docs/reference/effects.md").rdbuf();
+  const std::string page = text.str();
+  return page.substr(page.find(from), page.find(to) - page.find(from));
+}
+
+TEST(Catalogue, EverySourceHasItsTitleInTheDocumentation) {
+  std::string titles = part_of_page("Sources, in the order of the table:", "### Formulas");
+  std::erase(titles, '\n');  // a line that goes on begins with two spaces
+  for (const Effect& effect : effects::catalogue()) {
+    for (const Form& form : effect.forms) {
+      std::istringstream sources(form.source);
+      for (std::string source; std::getline(sources >> std::ws, source, ';');)
+        EXPECT_NE(titles.find(" " + source + ": "), std::string::npos) << effect.name << ": " << source;
+    }
+  }
+}
+
+TEST(Catalogue, EveryParameterHasItsFormulaInTheDocumentation) {
+  std::istringstream rows(part_of_page("| effect | parameters | formula | source |", "Why is a recording late"));
+  std::set<std::string> names;
+  for (std::string row; std::getline(rows, row);) {
+    std::istringstream quoted(row);
+    std::string group, text;
+    for (bool is_name = false; std::getline(quoted, text, '`'); is_name = !is_name) {
+      if (!is_name) continue;
+      const std::size_t point = text.find('.');  // the group may stand once in a row
+      if (point != std::string::npos) group = text.substr(0, point + 1);
+      names.insert(point == std::string::npos ? group + text : text);
+    }
+  }
+  for (const model::ActuatorParameter& parameter : model::actuator_parameters())
+    EXPECT_TRUE(names.contains(std::string(parameter.name))) << parameter.name;
 }
 
 TEST(Catalogue, WordsForPeopleNameTheFormAndThoseThatAreLeftOpen) {

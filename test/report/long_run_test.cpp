@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "pages/page.hpp"
+#include "report/run_report.hpp"
 #include "report/run_series.hpp"
 #include "small_log.hpp"
 #include "temporary_folder.hpp"
@@ -38,6 +40,7 @@ TEST(LongRun, NeedsNoMoreMemoryAndItsFiguresCountEveryTick) {
   test::SmallLog{.ticks = kTicks, .fault_at = kTicks - 100}.write(folder.path() / "log.lcm");
   const RunSeries run = read_run(folder.path() / "log.lcm");
   EXPECT_LE(most_samples(run), Thinning::kMost);
+  EXPECT_NO_THROW(run_report({run})) << "each line is thinned with its times";
   for (const Sampled* times : {&run.timing.wake_us, &run.timing.tick_us, &run.timing.bus_wake_us})
     EXPECT_LE(times->values().size(), Sampled::kMost);
   EXPECT_EQ(run.status.ticks, kTicks);
