@@ -13,7 +13,6 @@
 #include "json_output.hpp"
 #include "model/clip_library_file.hpp"
 #include "model/clip_library_writer.hpp"
-#include "model/standing_posture.hpp"
 #include "retargeting/build_library.hpp"
 #include "shown_progress.hpp"
 
@@ -142,7 +141,7 @@ CLI::App* add_build(CLI::App& app, BuildOptions& options) {
 int build(const BuildOptions& options,
           const std::function<void(const model::RobotModel&, const fs::path&)>& add_inverse) {
   const retargeting::LibraryRecipe recipe = retargeting::read_library_recipe(options.recipe, options.recordings);
-  const model::RobotModel robot = model::load_robot_standing_as(options.robot, recipe.stands_as.value_or(""));
+  const model::RobotModel robot = model::load_robot(model::find_robot(options.robot));
   model::require_writable(options.out);
   expect_no_other_clips(options.out, recipe);
   ProgressLine progress;

@@ -107,7 +107,7 @@ Motion parse_amass(const std::string& file, const std::string& bytes, const std:
     files::raise({file}, "mocap_framerate", "is missing or out of range", "0.1 to 1e5 Hz");
   const bool whole = !rest_pose.empty();
   const std::size_t count = whole ? kJoints : 1;
-  expect_bounded_samples(file, motion.frames, kJoints);
+  expect_bounded_samples(file + ": poses", motion.frames, kJoints);
   const auto rest = whole ? smpl_rest(rest_pose_file, rest_pose) : std::array<Eigen::Vector3d, kJoints>{};
   if (!whole)
     motion.notes.emplace_back("without a rest pose (--rest-pose) only the root is placed; the joints are angles alone");

@@ -168,7 +168,7 @@ AsfSkeleton read_asf(const std::string& file, const std::string& text) {
     } else if (same_word(word, ":bonedata")) {
       while (!asf_section(words)) {
         words.expect("begin");
-        expect_bounded_samples(file, 1, skeleton.bones.size() + 1);
+        expect_bounded_samples(fmt::format("{}:{}", file, words.line()), 1, skeleton.bones.size() + 1);
         skeleton.bones.push_back(asf_bone(words, skeleton.angle_rad));
       }
     } else if (same_word(word, ":hierarchy")) {
@@ -243,7 +243,7 @@ Motion parse_asf_amc(const std::string& asf_file, const std::string& asf, const 
   while (!words.end()) {
     const long number = static_cast<long>(motion.frames) + 1;
     words.whole("the number of the next frame", 0, 1L << 40);
-    expect_bounded_samples(amc_file, motion.frames + 1, motion.points.size());
+    expect_bounded_samples(fmt::format("{}:{}", amc_file, words.line()), motion.frames + 1, motion.points.size());
     for (std::vector<double>& of_bone : values) of_bone.clear();
     double ignored = 0.0;
     while (!words.end() && !to_number(words.peek(), ignored)) {

@@ -170,7 +170,7 @@ Motion parse_c3d(const std::string& file, const std::string& content) {
   if (!std::isfinite(scale) || scale == 0.0) bytes.fail(12, "the scale factor is not a number, or zero", "a number");
   if (!(start >= 2.0 && start < 65536.0)) bytes.fail(16, fmt::format("the first data block is {}", start), "2 or more");
   motion.rate_hz = rate_hz;
-  expect_bounded_samples(file, frames, points);
+  expect_bounded_samples(file + ": byte 2", frames, points);  // the header's counts
   c3d_labels(bytes, parameters, points, motion);
   const std::vector<std::string> units = c3d_strings(bytes, parameters, "POINT:UNITS");
   if (!units.empty()) {

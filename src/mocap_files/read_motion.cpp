@@ -42,6 +42,14 @@ std::string content(const fs::path& file) {
   return files::read_bounded_bytes(file, kLargestMotion_bytes, "a motion file");
 }
 
+/// Without UTF-8's mark in front, which programs on Windows write.
+std::string text_of(const fs::path& file) {
+  constexpr std::string_view kMark = "\xEF\xBB\xBF";
+  std::string text = content(file);
+  if (text.starts_with(kMark)) text.erase(0, kMark.size());
+  return text;
+}
+
 }  // namespace
 
 void expect_bounded_samples(const std::string& place, std::size_t frames, std::size_t points) {
@@ -75,18 +83,18 @@ std::optional<double> unit_of_name(std::string_view name) {
 Motion read_motion(const fs::path& file, const ReadOptions& options) {
   const std::string ending = file.extension().string();
   const std::string name = file.string();
-  if (same_word(ending, ".bvh")) return parse_bvh(name, content(file));
-  if (same_word(ending, ".trc")) return parse_trc(name, content(file));
+  if (same_word(ending, ".bvh")) return parse_bvh(name, text_of(file));
+  if (same_word(ending, ".trc")) return parse_trc(name, text_of(file));
   if (same_word(ending, ".c3d")) return parse_c3d(name, content(file));
-  if (same_word(ending, ".csv")) return parse_robot_csv(name, content(file));
+  if (same_word(ending, ".csv")) return parse_robot_csv(name, text_of(file));
   if (same_word(ending, ".npz")) {
     return parse_amass(name, content(file), options.rest_pose.string(),
-                       options.rest_pose.empty() ? std::string() : content(options.rest_pose));
+                       options.rest_pose.empty() ? std::string() : text_of(options.rest_pose));
   }
   if (same_word(ending, ".amc")) {
-    const std::string amc = content(file);
+    const std::string amc = text_of(file);
     const fs::path skeleton = options.skeleton.empty() ? asf_beside(file) : options.skeleton;
-    return parse_asf_amc(skeleton.string(), content(skeleton), name, amc);
+    return parse_asf_amc(skeleton.string(), text_of(skeleton), name, amc);
   }
   files::raise({name}, "", fmt::format("has the ending '{}'", ending),
                "a file that ends in .bvh, .amc, .trc, .c3d, .npz or .csv");

@@ -49,7 +49,7 @@ std::string root_column(std::string_view name) {
   return plain;
 }
 
-RobotColumns named_columns(const std::string& file, const std::vector<std::string_view>& header) {
+RobotColumns named_columns(const files::Place& place, const std::vector<std::string_view>& header) {
   constexpr std::array<std::string_view, 7> kRoot = {"x", "y", "z", "qw", "qx", "qy", "qz"};
   RobotColumns columns;
   columns.count = header.size();
@@ -63,21 +63,23 @@ RobotColumns named_columns(const std::string& file, const std::vector<std::strin
       columns.names.emplace_back(header[c]);
       continue;
     }
-    if (found[k]) files::raise({file, 1, static_cast<int>(c) + 1}, std::string(kRoot[k]), "is there twice", "it once");
+    if (found[k])
+      files::raise({place.file, place.line, static_cast<int>(c) + 1}, std::string(kRoot[k]), "is there twice",
+                   "it once");
     found[k] = true;
     (k < 3 ? columns.position[k] : columns.quaternion[k - 3]) = c;
   }
   for (std::size_t k = 0; k < kRoot.size(); ++k) {
     if (!found[k])
-      files::raise({file, 1}, std::string(kRoot[k]), "is missing",
+      files::raise(place, std::string(kRoot[k]), "is missing",
                    "columns of the root's position x, y, z and quaternion qw, qx, qy, qz, then joints");
   }
   return columns;
 }
 
-RobotColumns plain_columns(const std::string& file, std::size_t count) {
+RobotColumns plain_columns(const files::Place& place, std::size_t count) {
   if (count < 8)
-    files::raise({file, 1}, "", fmt::format("has {} columns", count), "x, y, z, a quaternion and joints: 8 or more");
+    files::raise(place, "", fmt::format("has {} columns", count), "x, y, z, a quaternion and joints: 8 or more");
   RobotColumns columns;
   columns.count = count;
   columns.position = {0, 1, 2};
@@ -105,7 +107,7 @@ Motion parse_robot_csv(const std::string& file, const std::string& text) {
   RobotColumns columns;
   std::vector<std::vector<double>> rows;
   bool header = false;
-  int line_number = 0;
+  int line_number = 0, first_line = 1;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t stop = std::min(text.find('\n', at), text.size());
     const std::string_view line = std::string_view(text).substr(at, stop - at);
@@ -116,13 +118,14 @@ Motion parse_robot_csv(const std::string& file, const std::string& text) {
     double ignored = 0.0;
     if (columns.count == 0) {
       header = std::ranges::none_of(cells, [&](std::string_view cell) { return to_number(cell, ignored); });
-      columns = header ? named_columns(file, cells) : plain_columns(file, cells.size());
+      columns = header ? named_columns({file, line_number}, cells) : plain_columns({file, line_number}, cells.size());
+      first_line = line_number;
       if (header) continue;
     }
-    expect_bounded_samples(file, rows.size() + 1, columns.count);
+    expect_bounded_samples(fmt::format("{}:{}", file, line_number), rows.size() + 1, columns.count);
     if (cells.size() != columns.count)
       files::raise({file, line_number}, "", fmt::format("has {} columns", cells.size()),
-                   fmt::format("{} as in line 1", columns.count));
+                   fmt::format("{} as in line {}", columns.count, first_line));
     std::vector<double> row(cells.size());
     for (std::size_t c = 0; c < cells.size(); ++c) {
       if (!to_number(cells[c], row[c]))
@@ -136,7 +139,7 @@ Motion parse_robot_csv(const std::string& file, const std::string& text) {
       files::raise({file, line_number}, "the root's quaternion", fmt::format("has the length {:.3g}", norm), "1");
     rows.push_back(std::move(row));
   }
-  if (rows.empty()) files::raise({file}, "", "has no frames", "a row for each frame");
+  if (rows.empty()) files::raise({file, line_number + 1}, "", "has no frames", "a row for each frame");
   Motion motion;
   motion.format = "robot CSV";
   motion.unit_m = 1.0;

@@ -34,8 +34,11 @@ class TrcLines {
   }
 
   void require(std::vector<std::string_view>& cells, const std::string& expected) {
-    if (!next(cells)) fail("the file ends here", expected);
+    if (next(cells)) return;
+    ++line_;
+    fail("the file ends here", expected);
   }
+  std::string place() const { return fmt::format("{}:{}", file_, line_); }
   [[noreturn]] void fail(const std::string& wrong, const std::string& expected) const {
     files::raise({file_, line_}, "", wrong, expected);
   }
@@ -90,14 +93,14 @@ Motion parse_trc(const std::string& file, const std::string& text) {
     if (cells[c].empty()) continue;
     columns.push_back(c);
     motion.points.push_back({std::string(cells[c]), -1, {}, {}});
-    expect_bounded_samples(file, 1, motion.points.size());
+    expect_bounded_samples(lines.place(), 1, motion.points.size());
   }
   if (columns.empty()) lines.fail("names no markers", "names of the markers, one in three columns");
   lines.require(cells, "X1, Y1, Z1, ...");
   while (lines.next(cells)) {
     if (cells.size() < 2 || (cells[0].empty() && cells[1].empty())) continue;  // an empty line
     lines.number(cells[0], "the frame's number");
-    expect_bounded_samples(file, motion.frames + 1, motion.points.size());
+    expect_bounded_samples(lines.place(), motion.frames + 1, motion.points.size());
     for (std::size_t m = 0; m < columns.size(); ++m) {
       Eigen::Vector3d at = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
       const std::size_t c = columns[m];

@@ -94,25 +94,9 @@ std::vector<std::size_t> of_channel(const std::vector<BuiltClip>& clips, std::si
   return list;
 }
 
-/// Channel after channel, because each clip is made to mix with those of the channels before.
-std::vector<Pass> first_passes(const generator::Making& making, std::vector<BuiltClip>& clips) {
-  std::vector<Pass> passes;
-  for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
-    passes.push_back(
-        {of_channel(clips, channel), true, [&making, &clips, channel](std::size_t i, const work::Progress& progress) {
-           std::vector<const generator::MadeGait*> others;
-           for (const BuiltClip& other : clips) {
-             if (other.recipe.channel < channel) others.push_back(&other.made.gait);
-           }
-           fit_for_blending(making, others, clips[i].made, progress);
-         }});
-  }
-  return passes;
-}
-
 /// Clips at full gain know nothing of each other. Half-gain clips are made channel after channel, in two sweeps: in the
 /// second one each mixes with all others as they are.
-std::vector<Pass> passes_with_half_gains(const generator::Making& making, std::vector<BuiltClip>& clips) {
+std::vector<Pass> all_passes(const generator::Making& making, std::vector<BuiltClip>& clips) {
   std::vector<std::size_t> all(clips.size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
   std::vector<Pass> passes = {{all, true, [&making, &clips](std::size_t i, const work::Progress& progress) {
@@ -189,8 +173,7 @@ BuiltLibrary build_library(const model::RobotModel& robot, const LibraryRecipe& 
 
   built.clips.resize(recipe.clips.size());
   for (std::size_t i = 0; i < recipe.clips.size(); ++i) built.clips[i].recipe = recipe.clips[i];
-  const std::vector<Pass> passes = recipe.revision == kFirstRevision ? first_passes(making, built.clips)
-                                                                     : passes_with_half_gains(making, built.clips);
+  const std::vector<Pass> passes = all_passes(making, built.clips);
   std::size_t all = 0, done = 0;
   for (const Pass& pass : passes) all += pass.clips.size();
   for (const Pass& pass : passes) {

@@ -61,13 +61,8 @@ LibraryRecipe read_library_recipe(const fs::path& file, const fs::path& recordin
   // The only way so far: postures of recorded people aren't retargeted. The file says it, so that nobody is surprised.
   reader.one_of("postures", {"synthesised"});
   if (reader.has("names")) recipe.names = within(file.parent_path(), reader.required<std::string>("names"));
-  if (reader.has("stands_as")) recipe.stands_as = within(file.parent_path(), reader.required<std::string>("stands_as"));
   if (reader.has("duty_factor"))
     recipe.duty_factor = reader.required<double>("duty_factor", files::in_range(0.51, 0.95));
-  recipe.revision = reader.optional<int>("revision", kLatestRevision);
-  if (recipe.revision != kFirstRevision && recipe.revision != kLatestRevision)
-    reader.fail("revision", fmt::format("is {}", recipe.revision),
-                fmt::format("{} or {}", kFirstRevision, kLatestRevision));
   files::ConfigReader clips = reader.map("clips");
   for (std::size_t channel = 0; channel < kVelocityChannels; ++channel) {
     for (const double sign : {1.0, -1.0}) {

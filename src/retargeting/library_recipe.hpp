@@ -27,17 +27,10 @@ struct ClipRecipe {
   files::Place place, frames_place;
 };
 
-inline constexpr int kFirstRevision = 1, kLatestRevision = 2;
-
 struct LibraryRecipe {
   std::string source;  ///< who recorded it, under which terms: stands in every clip
   std::optional<std::filesystem::path> names;
-  std::optional<double> duty_factor;               ///< of all dynamic clips; nullopt: the median of the recorded cycles
-  std::optional<std::filesystem::path> stands_as;  ///< clips whose standing posture these have; nullopt: robot.yaml's
-  /// How clips are made: kFirstRevision's clips hold at every gain by themselves and swing their arms about the
-  /// standing posture; the latest revision's clips have half-gain clips beside them (pmg/half_gain.hpp), and the
-  /// person's arms.
-  int revision = kLatestRevision;
+  std::optional<double> duty_factor;  ///< of all dynamic clips; nullopt: the median of the recorded cycles
   std::vector<ClipRecipe> clips;
 };
 

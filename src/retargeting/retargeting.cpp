@@ -20,8 +20,8 @@ using generator::GaitTask;
 using generator::kClipSamples;
 using generator::LegTrajectory;
 
-/// Of an even mixture with another clip, and of a posture; the clip alone has 1 at each gain.
-constexpr double kMixtureWeight = 3.0, kPostureWeight = 0.2;
+/// Of a clip with a posture; alone and in mixtures it has 1 at each gain.
+constexpr double kPostureWeight = 0.2;
 
 /// Gains of a clip and of another one in mixtures that half-gain clips are made for; their sum is 1 at most
 /// (Blend::kGain).
@@ -91,36 +91,6 @@ double kept_share(const RetargetedClip& made) {
       made.human.mean_velocity.cwiseAbs().cwiseProduct(Eigen::Vector3d(1.0, 1.0, made.human.leg_length_m));
   const Eigen::Vector3d kept = (made.wanted_velocity.array() != 0.0).select(speed, 0.0);
   return kept.sum() / speed.sum();
-}
-
-/// From the task of retargeting to that of a clip that blends.
-GaitTask blending_task(const generator::Making& making, const std::vector<const generator::MadeGait*>& others,
-                       const RetargetedClip& made) {
-  GaitTask task = made.gait.task;
-  // A rigid sole has no toes to bend: where the foot rolls over them, the pelvis rises on the swinging side, as in
-  // generator/synthesis.cpp.
-  constexpr double kHike_rad = 0.10;
-  if (made.wanted_velocity.x() != 0.0) task.hike_rad = std::max(task.hike_rad, kHike_rad);
-  task.clearance_m = 0.030;
-  // Curves count four times as much as in retargeting, because more scenarios pull at them. A clip that keeps little of
-  // the person's motion (a turn, of a walk along a circle) can't keep its curves.
-  task.weights.reference << 48.0, 48.0, 24.0, 48.0, 72.0, 24.0;
-  task.weights.bias << 24.0, 24.0, 12.0, 24.0, 24.0, 12.0;
-  const double kept = kept_share(made);
-  task.weights.reference *= kept;
-  task.weights.bias *= kept;
-  task.weights.velocity = 9.0;
-  task.weights.velocity_yaw = 6.0;
-  task.weights.clearance = 400.0;
-  task.weights.step_height = 2400.0;
-  task.weights.above_ground = 1800.0;
-  task.weights.foot_gap = 400.0;
-  task.scenarios = generator::scenarios(making, kPostureWeight);
-  for (const generator::MadeGait* other : others) {
-    task.scenarios.push_back(
-        {0.5, kMixtureWeight, generator::clip_addition(making, other->legs, other->task, 0.5, task.period_s)});
-  }
-  return task;
 }
 
 /// Of the clip at full gain alone, as a library is accepted with it (generator/clip_report.hpp).
@@ -289,14 +259,6 @@ RetargetedClip retarget(const generator::Making& making, const mocap::Recording&
   made.retarget_s = thread_cpu_s() - begin_s;
   made.frames_per_s = static_cast<double>(kClipSamples) / made.retarget_s;
   return made;
-}
-
-void fit_for_blending(const generator::Making& making, const std::vector<const generator::MadeGait*>& others,
-                      RetargetedClip& made, const work::Progress& progress) {
-  const double begin_s = thread_cpu_s();
-  made.unmended = {made.likeness, made.ground};
-  make_clip(making, blending_task(making, others, made), progress, made);
-  made.fit_s = thread_cpu_s() - begin_s;
 }
 
 void fit_full_gain(const generator::Making& making, RetargetedClip& made, const work::Progress& progress) {

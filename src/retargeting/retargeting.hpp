@@ -13,7 +13,7 @@
 
 namespace pmg::retargeting {
 
-/// A clip before fit_for_blending.
+/// A clip before fit_full_gain.
 struct Unmended {
   Imitation likeness;
   generator::GroundMeasure ground;
@@ -33,7 +33,7 @@ struct RetargetedClip {
   mocap::SeamJump seam;                  ///< of the clip's joints
   double limit_margin_rad = 0.0;         ///< smallest distance from a joint limit; negative: beyond it
   double joint_speed_share = 0.0;        ///< of the joints' limits, largest
-  double retarget_s = 0.0, fit_s = 0.0;  ///< CPU time of retarget and fit_for_blending
+  double retarget_s = 0.0, fit_s = 0.0;  ///< CPU time of retarget, and of both fits
   double frames_per_s = 0.0;             ///< clip samples that retarget made a second
 };
 
@@ -46,17 +46,14 @@ struct RetargetedClip {
 RetargetedClip retarget(const generator::Making& making, const mocap::Recording& recording, const mocap::GaitCycle& cut,
                         Channel channel, std::optional<double> duty_factor = {}, const work::Progress& progress = {});
 
-/// Makes the clip anew, so that the feet keep to the ground at every gain, in postures, and in even mixtures with
-/// these other finished clips: joint angles blend linearly, heights of feet don't. The curves leave the human's as far
-/// as that needs; likeness says how far, unmended what it was before. Throws work::Interrupted where progress is over.
-void fit_for_blending(const generator::Making& making, const std::vector<const generator::MadeGait*>& others,
-                      RetargetedClip& made, const work::Progress& progress = {});
-
 /// Makes the clip anew at full gain alone, as a library is accepted with it, with the person's arms.
+/// The curves leave the human's as far as that needs; likeness says how far, unmended what it was before. Throws
+/// work::Interrupted where progress is over.
 void fit_full_gain(const generator::Making& making, RetargetedClip& made, const work::Progress& progress = {});
 
 /// Leaves the clip as it is and makes its half-gain clip, so that the feet keep to the ground at every gain, in
-/// postures, and in mixtures with these other clips, whose half-gain clips count where they have them.
+/// postures, and in mixtures with these other clips, whose half-gain clips count where they have them: joint angles
+/// blend linearly, heights of feet don't. Throws work::Interrupted where progress is over.
 void fit_half_gain(const generator::Making& making, const std::vector<const RetargetedClip*>& others,
                    RetargetedClip& made, const work::Progress& progress = {});
 

@@ -1,4 +1,4 @@
-// What a person's cycle costs on its way to a clip, on one core: retargeting, and the fit for blending after it.
+// What a person's cycle costs on its way to a clip, on one core: retargeting, and the fits for blending after it.
 #include <benchmark/benchmark.h>
 
 #include "generator/static_clips.hpp"
@@ -10,7 +10,7 @@ namespace pmg::test {
 namespace {
 
 /// One retargeting of a made-up walk a call. Counters: clip samples made a second of CPU time, of the file's reading to
-/// a clip at full gain (as published retargeters count), and of the fit for blending.
+/// a clip at full gain (as published retargeters count), and of the fits at full and half gain after it.
 void BM_retargeting(benchmark::State& state) {
   const model::RobotModel robot = model::load_robot(model::find_robot("z1"));
   generator::Making making{robot, generator::find_joint_roles(robot), {}, {}};
@@ -27,7 +27,8 @@ void BM_retargeting(benchmark::State& state) {
   double retarget_s = 0.0, fit_s = 0.0;
   for (auto _ : state) {
     retargeting::RetargetedClip made = retargeting::retarget(making, recording, *cycle, kVx);
-    retargeting::fit_for_blending(making, {}, made);
+    retargeting::fit_full_gain(making, made);
+    retargeting::fit_half_gain(making, {}, made);
     retarget_s += made.retarget_s;
     fit_s += made.fit_s;
   }

@@ -70,6 +70,16 @@ TEST(BadFiles, ARootQuaternionOfAnotherLengthIsRefused) {
             "x.csv:2: the root's quaternion: has the length 2; expected 1");
 }
 
+TEST(BadFiles, AFileThatEndsTooSoonNamesTheLineThatIsMissing) {
+  const std::string csv = test::robot_csv();
+  EXPECT_EQ(refusal([&] { parse_robot_csv("x.csv", csv.substr(0, csv.find('\n') + 1)); }),
+            "x.csv:2: has no frames; expected a row for each frame");
+  EXPECT_EQ(refusal([] { parse_trc("x.trc", ""); }), "x.trc:1: the file ends here; expected PathFileType");
+  EXPECT_EQ(refusal([&] { parse_robot_csv("x.csv", "\n" + replaced(csv, "root_qw", "knee")); }),
+            "x.csv:2: qw: is missing; expected columns of the root's position x, y, z and quaternion qw, qx, qy, qz, "
+            "then joints");
+}
+
 TEST(BadFiles, AnUnknownEndingNamesThoseThatAreRead) {
   EXPECT_NE(refusal([] {
               read_motion("walk.fbx");

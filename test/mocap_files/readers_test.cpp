@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <numbers>
 
 #include "mocap_files/motion.hpp"
 #include "small_files.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg::mocap {
 namespace {
@@ -118,6 +120,23 @@ TEST(RobotCsv, FindsTheQuaternionsOrderWithoutAHeader) {
         << motion.notes[0];
     EXPECT_EQ(motion.joints.size(), 2U);
   }
+}
+
+/// Programs on Windows write UTF-8's mark in front, and two characters at a line's end.
+TEST(TextFiles, AreReadAsWindowsWritesThem) {
+  const pmg::test::TemporaryFolder folder;
+  for (const auto& [name, text] : {std::pair{"a.bvh", test::small_bvh()}, std::pair{"b.trc", test::small_trc()},
+                                   std::pair{"c.csv", test::robot_csv()}, std::pair{"d.asf", test::small_asf()},
+                                   std::pair{"d.amc", test::small_amc()}}) {
+    std::ofstream file(folder.file(name), std::ios::binary);
+    file << "\xEF\xBB\xBF";
+    for (const char c : text) file << (c == '\n' ? "\r" : "") << c;
+  }
+  EXPECT_EQ(read_motion(folder.file("a.bvh")).frames, 2U);
+  EXPECT_EQ(read_motion(folder.file("b.trc")).frames, 3U);
+  EXPECT_EQ(read_motion(folder.file("b.trc")).points[1].name, "L.Toe");
+  EXPECT_EQ(read_motion(folder.file("c.csv")).joints, (std::vector<std::string>{"left_knee", "right_knee"}));
+  EXPECT_EQ(read_motion(folder.file("d.amc")).frames, 2U);
 }
 
 }  // namespace

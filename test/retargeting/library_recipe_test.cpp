@@ -64,17 +64,6 @@ TEST_F(Recipe, MayStateTheDutyFactorOfAWalk) {
     expect_refused(std::string("duty_factor: ") + r + "\n" + clips, ":1:", "expected a number");
 }
 
-TEST_F(Recipe, MayAskForTheWayOfTheFirstClipsAndForAnotherStandingPosture) {
-  const std::string clips = with_forward("{recording: walk.bvh, frames: auto}");
-  EXPECT_EQ(read_library_recipe(written(clips)).revision, kLatestRevision);
-  EXPECT_FALSE(read_library_recipe(written(clips)).stands_as.has_value());
-  const LibraryRecipe first = read_library_recipe(written("revision: 1\nstands_as: old\n" + clips));
-  EXPECT_EQ(first.revision, kFirstRevision);
-  EXPECT_EQ(first.stands_as, folder_.file("old"));
-  for (const char* revision : {"0", "3", "1.5", "first"})
-    expect_refused(std::string("revision: ") + revision + "\n" + clips, ":1:", "expected");
-}
-
 TEST_F(Recipe, FindsRecordingsInAnotherFolderThanItsOwn) {
   const std::filesystem::path recordings = folder_.file("recordings");
   std::filesystem::create_directory(recordings);
