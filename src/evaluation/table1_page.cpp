@@ -134,9 +134,9 @@ pages::Table errors_table(const Table1& table) {
 
 /// Lines point to the courses' data.
 pages::Chart course_chart(const Table1& table, Channel channel) {
-  constexpr std::array<const char*, kChannels> kTitles = {"forward [m/s]",        "to the left [m/s]",
-                                                          "turning left [rad/s]", "pitch, forward [rad]",
-                                                          "roll, right [rad]",    "height [m]"};
+  constexpr std::array kTitles = {"forward [m/s]",        "to the left [m/s]", "turning left [rad/s]",
+                                  "pitch, forward [rad]", "roll, right [rad]", "height [m]"};
+  static_assert(kTitles.size() == kChannels);
   pages::Chart chart{.title = kTitles[channel], .lines = {}, .height_px = 190};
   for (std::size_t c = 0; c < table.cases.size(); ++c) {
     const Course& course = table.campaign.courses[c];

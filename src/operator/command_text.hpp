@@ -9,7 +9,8 @@
 
 namespace pmg::ops {
 
-inline constexpr std::array<const char*, kChannels> kCommandUnits = {"m/s", "m/s", "rad/s", "rad", "rad", "m"};
+inline constexpr std::array kCommandUnits = {"m/s", "m/s", "rad/s", "rad", "rad", "m"};
+static_assert(kCommandUnits.size() == kChannels);
 
 /// How far two values of a channel are apart, as a share of the larger one; near zero, of 0.1 m/s, rad/s, rad or m.
 double share_apart(double a, double b);

@@ -15,7 +15,8 @@ namespace pmg::ops {
 namespace {
 
 constexpr double kStill = 1e-4;  ///< m/s, rad/s, rad or m in a tick: below the slowest ramp
-constexpr std::array<const char*, kChannels> kShortNames = {"vx", "vy", "omega", "pitch", "roll", "height"};
+constexpr std::array kShortNames = {"vx", "vy", "omega", "pitch", "roll", "height"};
+static_assert(kShortNames.size() == kChannels);
 
 /// "limited: vx 50 -> 0.8 m/s (range -0.5 to 0.8)", and whether the ranges alone explain it.
 std::string words(const Command& asked, const RobotNews& news, bool settled) {

@@ -1,5 +1,6 @@
 #include "policy/observation_layout.hpp"
 
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -14,7 +15,8 @@ namespace {
 constexpr double kVelocityScale = 0.1;  // joint velocities reach 10 rad/s, all other values about 1
 
 std::vector<Element> channels() {
-  constexpr int kSigns[kChannels] = {1, -1, -1, 1, -1, 1};
+  constexpr std::array kSigns = {1, -1, -1, 1, -1, 1};
+  static_assert(kSigns.size() == kChannels);
   std::vector<Element> found;
   for (std::size_t c = 0; c < kChannels; ++c) found.push_back({kChannelNames[c], kSigns[c]});
   return found;

@@ -14,9 +14,10 @@ namespace pmg::report {
 namespace {
 
 constexpr std::array<const char*, 2> kFeet = {"left", "right"};
-constexpr std::array<const char*, kChannels> kTitles = {
-    "Forward velocity vx [m/s]",    "Sideways velocity vy [m/s]",       "Yaw rate omega [rad/s]",
-    "Torso pitch [rad], + forward", "Torso roll [rad], + to the right", "Height [m], deviation from standing"};
+constexpr std::array kTitles = {"Forward velocity vx [m/s]",        "Sideways velocity vy [m/s]",
+                                "Yaw rate omega [rad/s]",           "Torso pitch [rad], + forward",
+                                "Torso roll [rad], + to the right", "Height [m], deviation from standing"};
+static_assert(kTitles.size() == kChannels);
 
 /// Of the range that the robot takes: a mistyped command that is far beyond it must not flatten what the robot did.
 constexpr double kAskedShown = 1.5;

@@ -46,9 +46,9 @@ Lanes::Lane step_lane(const std::string& name, const std::vector<RunSeries::Step
 
 /// The step's command, without channels that are zero.
 std::string asked_text(const RunSeries::Step& step) {
-  static constexpr std::array<const char*, kChannels> kNames = {"forward {:+.2f} m/s", "sideways {:+.2f} m/s",
-                                                                "turn {:+.2f} rad/s",  "pitch {:+.2f} rad",
-                                                                "roll {:+.2f} rad",    "height {:+.3f} m"};
+  static constexpr std::array kNames = {"forward {:+.2f} m/s", "sideways {:+.2f} m/s", "turn {:+.2f} rad/s",
+                                        "pitch {:+.2f} rad",   "roll {:+.2f} rad",     "height {:+.3f} m"};
+  static_assert(kNames.size() == kChannels);
   std::string text;
   for (std::size_t channel = 0; channel < kChannels; ++channel) {
     if (step.asked[channel] == 0.0) continue;

@@ -13,7 +13,8 @@ namespace pmg::sil {
 
 namespace {
 
-constexpr std::array<const char*, kChannels> kNames = {"forward", "sideways", "turn", "pitch", "roll", "height"};
+constexpr std::array kNames = {"forward", "sideways", "turn", "pitch", "roll", "height"};
+static_assert(kNames.size() == kChannels);
 
 double share_cut(const Command& asked, const Command& admitted) {
   double most = 0.0;

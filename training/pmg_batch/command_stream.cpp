@@ -11,7 +11,8 @@ constexpr double kSmallestShare = 0.08;
 // Of the draws this share has velocities of up to kSlowest of their ranges, as of somebody who works at a table.
 constexpr double kSlowShare = 0.2, kSlowest = 0.4;
 constexpr double kJumpingShare = 0.04;  // of the draws; with ten jumps each, 5 % of the time
-constexpr std::array<double, kChannels> kChannelShown = {0.7, 0.5, 0.55, 0.45, 0.45, 0.45};
+constexpr std::array kChannelShown = {0.7, 0.5, 0.55, 0.45, 0.45, 0.45};
+static_assert(kChannelShown.size() == kChannels);
 }  // namespace
 
 const Command& CommandStream::step(double dt_s) {
