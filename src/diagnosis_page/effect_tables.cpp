@@ -143,10 +143,9 @@ void show_checks(pages::Page& page, const Diagnosis& diagnosis, const DiagnosedR
                      .rows = {}};
   for (const Signature& check : runs.checks) {
     const evidence::Interval& v = check.value;
-    table.rows.push_back(
-        {effects::title(check.effect), words(check.agreement), beside_the_result(check, diagnosis, runs), check.check,
-         std::isfinite(v.value) ? evidence::text_of(v, check.unit, 3) : "",
-         check.sentence});
+    table.rows.push_back({effects::title(check.effect), words(check.agreement),
+                          beside_the_result(check, diagnosis, runs), check.check,
+                          std::isfinite(v.value) ? evidence::text_of(v, check.unit, 3) : "", check.sentence});
   }
   page.table(table);
 }
