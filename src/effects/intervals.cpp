@@ -38,6 +38,15 @@ Eigen::VectorXd student_widths(const NestedModel& model, const Eigen::MatrixXd& 
   return widths;
 }
 
+/// Deviation of a coordinate that ended at the edge of its range, were it free to move on from there.
+double deviation_at_edge(const NestedModel& model, const Eigen::MatrixXd& information, Eigen::Index coordinate) {
+  std::vector<Eigen::Index> seen = seen_inside(model, information);
+  seen.push_back(coordinate);
+  const Eigen::MatrixXd covariance = fitting::cluster_robust_covariance(model, seen).robust;
+  const Eigen::Index last = std::ssize(seen) - 1;
+  return std::sqrt(std::max(0.0, covariance(last, last)));
+}
+
 evidence::Interval percentiles(double value, const std::vector<double>& drawn) {
   return {value, fitting::quantile(drawn, 0.025), fitting::quantile(drawn, 0.975)};
 }
@@ -86,12 +95,10 @@ std::vector<evidence::Interval> parameter_intervals(const NestedModel& model, co
       found.push_back({value, u.lower, u.upper});
       continue;
     }
-    if (deviations[i] == 0.0) {
-      found.push_back({value, value, value});
-      continue;
-    }
+    const double deviation = deviations[i] > 0.0 ? deviations[i] : deviation_at_edge(model, information, i);
     const double shift = model.step_shift.size() > 0 ? model.step_shift[i] : 0.0;
-    const double half = widths[i] * deviations[i], form = options.form_of_value * std::abs(value);
+    const double half = widths[i] * deviation;
+    const double form = options.form_of_value * (value != 0.0 ? std::abs(value) : std::abs(u.typical));
     const double low = u.value(x + std::min(0.0, shift) - half) - form;
     const double high = u.value(x + std::max(0.0, shift) + half) + form;
     found.push_back({value, std::max(u.lower, low), std::min(u.upper, high)});

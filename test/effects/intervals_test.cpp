@@ -77,6 +77,26 @@ TEST(WideDifferences, StayWhereTheyAreWideEnough) {
   EXPECT_EQ(with_wide_differences(of.fit, fitted, folds(of.fit), kNoise_rad2).unknowns.front().difference, 0.05);
 }
 
+TEST(Intervals, HaveAWidthWhereTheFitEndsAtTheEdgeOfItsRange) {
+  Fitted of("friction.coulomb_Nm", 1e-3, 1e-3);
+  of.number.upper = 0.19;
+  const NestedModel at_upper = of.from(0.1);
+  ASSERT_EQ(at_upper.model.actuator.friction.coulomb_Nm, of.number.upper);
+  const evidence::Interval upper = of.interval(at_upper);
+  EXPECT_LT(upper.low, 0.99 * upper.value);
+  EXPECT_GT(upper.low, 0.5 * upper.value) << "these runs show friction well";
+  EXPECT_EQ(upper.high, of.number.upper) << "beyond its range nothing is said";
+  Fitted none("friction.viscous_Nm_s_per_rad", 1e-3, 1e-3);
+  none.truth.actuator.friction.viscous_Nm_s_per_rad = 0.0;
+  none.number.lower = 0.0;
+  const NestedModel at_zero = none.fit.fit(none.truth, {none.number}, 0);
+  NestedModel linearised = at_zero;
+  none.fit.linearise(linearised);
+  const evidence::Interval zero = none.interval(linearised);
+  EXPECT_EQ(zero.low, 0.0);
+  EXPECT_GT(zero.high, 0.0);
+}
+
 // Euler's steps of 4 ms act like 2 ms less delay; a fit makes up for them.
 TEST(Intervals, AreStudentsWithTheBlocksThatDetermineTheNumber) {
   const Fitted of("friction.coulomb_Nm", 1e-3, 1e-3);
