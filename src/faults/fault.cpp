@@ -10,11 +10,11 @@ namespace pmg::faults {
 namespace {
 
 struct Row {
-  FaultCode code;  // the row's own place in the table
-  const char *name, *unit;
-  const char* cause;                     // with {joint}, {value}, {limit}, {beyond} = |value - limit|
+  FaultCode code = FaultCode::kNone;  // the row's own place in the table
+  const char *name = "", *unit = "";
+  const char* cause = "";                // with {joint}, {value}, {limit}, {beyond} = |value - limit|
   const char* cause_no_value = nullptr;  // when no joint, or no number, can be named; null: the same
-  const char* advice;
+  const char* advice = "";
   CycleRange first;  // when the drives damp, or where the robot may sit down first, when that begins
   bool sit_down = false, policy_is_sound = false;
 };

@@ -16,24 +16,27 @@ namespace {
 
 constexpr std::size_t kC3dBlock_bytes = 512;
 
+/// A byte of two's complement.
+constexpr int with_sign(std::uint8_t byte) { return byte < 128 ? byte : byte - 256; }
+
 /// Numbers as the processor wrote them that made the file.
 class C3dNumbers {
  public:
-  enum class Processor : std::uint8_t { intel = 84, dec = 85, mips = 86 };
+  enum class Processor : std::uint8_t { kIntel = 84, kDec = 85, kMips = 86 };
 
   C3dNumbers(const Bytes& bytes, Processor processor) : bytes_(bytes), processor_(processor) {}
 
   std::uint16_t word(std::size_t offset, const std::string& expected) const {
     const std::uint16_t value = bytes_.u16(offset, expected);
-    return processor_ == Processor::mips ? static_cast<std::uint16_t>(value << 8 | value >> 8) : value;
+    return processor_ == Processor::kMips ? static_cast<std::uint16_t>(value << 8 | value >> 8) : value;
   }
   double integer(std::size_t offset, const std::string& expected) const {
     return static_cast<std::int16_t>(word(offset, expected));
   }
   double real(std::size_t offset, const std::string& expected) const {
     const std::uint32_t low = word(offset, expected), high = word(offset + 2, expected);
-    if (processor_ == Processor::mips) return static_cast<double>(std::bit_cast<float>(low << 16 | high));
-    if (processor_ == Processor::intel) return static_cast<double>(std::bit_cast<float>(high << 16 | low));
+    if (processor_ == Processor::kMips) return static_cast<double>(std::bit_cast<float>(low << 16 | high));
+    if (processor_ == Processor::kIntel) return static_cast<double>(std::bit_cast<float>(high << 16 | low));
     return static_cast<double>(std::bit_cast<float>(low << 16 | high)) / 4.0;  // DEC: words swapped, exponent 2 higher
   }
 
@@ -67,9 +70,8 @@ C3dParameters c3d_parameters(const Bytes& bytes, const C3dNumbers& numbers, std:
   std::map<std::pair<int, std::string>, C3dParameter> found;
   const std::string expected = "a record of the parameter section";
   for (std::size_t at = start + 4;;) {
-    const auto length =
-        static_cast<std::size_t>(std::abs(static_cast<int>(static_cast<std::int8_t>(bytes.u8(at, expected)))));
-    const int id = static_cast<std::int8_t>(bytes.u8(at + 1, expected));
+    const auto length = static_cast<std::size_t>(std::abs(with_sign(bytes.u8(at, expected))));
+    const int id = with_sign(bytes.u8(at + 1, expected));
     if (length == 0 || id == 0) break;
     const std::string name = upper_case(bytes.at(at + 2, length, expected));
     const std::size_t after_name = at + 2 + length;
@@ -78,7 +80,7 @@ C3dParameters c3d_parameters(const Bytes& bytes, const C3dNumbers& numbers, std:
       groups[-id] = name;
     } else {
       C3dParameter parameter;
-      parameter.type = static_cast<std::int8_t>(bytes.u8(after_name + 2, expected));
+      parameter.type = with_sign(bytes.u8(after_name + 2, expected));
       const std::size_t dimensions = bytes.u8(after_name + 3, expected);
       if (dimensions > 7) bytes.fail(after_name + 3, fmt::format("has {} dimensions", dimensions), "7 at most");
       for (std::size_t d = 0; d < dimensions; ++d)
