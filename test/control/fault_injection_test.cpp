@@ -170,19 +170,33 @@ faults::CycleRange range_in(const std::string& cell) {
   return range;
 }
 
-/// The fault table (seven columns) of docs/reference/safety.md: code -> bus cycles.
-std::map<std::string, faults::Reaction> documented_reactions() {
+/// The fault table (seven columns) of docs/reference/safety.md: codes with their bus cycles, in its order.
+std::vector<std::pair<std::string, faults::Reaction>> documented_rows() {
   constexpr std::size_t kColumns = 7, kCode = 1, kSitDown = 5, kDamping = 6;  // the first cell is before the first bar
   std::ifstream file(std::filesystem::path(pmg::test::project_folder()) / "docs/reference/safety.md");
-  std::map<std::string, faults::Reaction> reactions;
+  std::vector<std::pair<std::string, faults::Reaction>> rows;
   for (std::string line; std::getline(file, line);) {
     const std::vector<std::string> cells = cells_of(line);
     if (cells.size() != kColumns + 1 || !cells[kCode].starts_with(" `")) continue;
     const std::string code = cells[kCode].substr(2, cells[kCode].rfind('`') - 2);
-    const faults::Reaction told{range_in(cells[kSitDown]), range_in(cells[kDamping])};
-    EXPECT_TRUE(reactions.emplace(code, told).second) << code << " has two rows";
+    rows.emplace_back(code, faults::Reaction{range_in(cells[kSitDown]), range_in(cells[kDamping])});
   }
+  return rows;
+}
+
+std::map<std::string, faults::Reaction> documented_reactions() {
+  std::map<std::string, faults::Reaction> reactions;
+  for (const auto& [code, told] : documented_rows())
+    EXPECT_TRUE(reactions.emplace(code, told).second) << code << " has two rows";
   return reactions;
+}
+
+/// "When one tick finds several, it keeps the first of this table."
+TEST(FaultTable, IsInTheOrderInWhichACauseIsKept) {
+  std::vector<std::string> kept, documented;
+  for (std::size_t k = 1; k < faults::kFaultCodes; ++k) kept.emplace_back(to_string(static_cast<faults::FaultCode>(k)));
+  for (const auto& row : documented_rows()) documented.push_back(row.first);
+  EXPECT_EQ(documented, kept);
 }
 
 TEST(FaultTable, EveryCodeIsInjectedAndDocumentedAndNothingElseIs) {
