@@ -64,7 +64,9 @@ void expect_no_recordings(const fs::path& folder) {
 
 void remove_next_excitation(const fs::path& folder) {
   expect_no_recordings(folder);
-  fs::remove_all(folder);
+  fs::remove_all(folder / "commands");
+  for (const char* name : {"runs.csv", "bench.yaml"}) fs::remove(folder / name);
+  if (fs::exists(folder) && fs::is_empty(folder)) fs::remove(folder);
 }
 
 void write_next_excitation(const fs::path& folder, const bench::Bench& bench, const NextExcitation& next) {

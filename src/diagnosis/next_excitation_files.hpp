@@ -10,7 +10,7 @@ namespace pmg::diagnosis {
 /// Before the work whose excitation comes there. Throws std::runtime_error if somebody recorded an earlier one there.
 void expect_no_recordings(const std::filesystem::path& folder);
 
-/// An earlier diagnosis' excitation is gone. Throws as expect_no_recordings.
+/// An earlier diagnosis' excitation is gone; what else somebody put there stays. Throws as expect_no_recordings.
 void remove_next_excitation(const std::filesystem::path& folder);
 
 /// Writes FOLDER/commands/TRAJECTORY.csv (t_s, q_cmd_rad; _m on a linear rig), FOLDER/runs.csv with the columns of the

@@ -181,6 +181,11 @@ TEST(NextExcitation, IsWrittenAsWhatCanBePlayedAndAppended) {
   EXPECT_THROW(remove_next_excitation(folder / "next"), std::runtime_error);
   EXPECT_TRUE(fs::exists(folder / "next" / "runs.csv")) << "somebody's recordings keep what they were asked by";
   fs::remove(folder / "next" / "runs");
+  fs::create_directories(folder / "next" / "photos");
+  remove_next_excitation(folder / "next");
+  EXPECT_FALSE(fs::exists(folder / "next" / "runs.csv"));
+  EXPECT_TRUE(fs::exists(folder / "next" / "photos")) << "what pmg_diagnose didn't write stays";
+  fs::remove(folder / "next" / "photos");
   remove_next_excitation(folder / "next");
   EXPECT_FALSE(fs::exists(folder / "next"));
   fs::remove_all(folder);
