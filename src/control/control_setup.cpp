@@ -191,6 +191,10 @@ void for_each_option(Options& tick, Visit&& visit) {
   visit("/sit_down/duration_s", tick.sit_down.duration_s);
   visit("/sit_down/settle_s", tick.sit_down.settle_s);
   visit("/sit_down/reference_s", tick.sit_down.reference_s);
+  visit("/sit_down/ahead_share", tick.sit_down.ahead_share);
+  visit("/sit_down/unbalanced/reference_s", tick.sit_down.unbalanced.reference_s);
+  visit("/sit_down/unbalanced/crouch_s", tick.sit_down.unbalanced.crouch_s);
+  visit("/sit_down/unbalanced/ahead_share", tick.sit_down.unbalanced.ahead_share);
   visit("/sit_down/height_rate_m_s", tick.sit_down.height_rate_m_s);
   visit("/sit_down/brake_factor", tick.sit_down.brake_factor);
   visit("/supervisor/stale_command_s", tick.supervisor.stale_command_s);
@@ -299,6 +303,10 @@ void restore_options(const nlohmann::ordered_json& json, TickOptions& options) {
   if (unnamed("/rehearsal/duration_s")) options.rehearsal.duration_s = 0.0;
   if (unnamed("/velocity_trim/gain_per_s")) options.velocity_trim.gain_per_s = 0.0;
   if (unnamed("/sit_down/duration_s")) options.sit_down.duration_s = 0.0;
+  if (unnamed("/sit_down/unbalanced/crouch_s")) {
+    SitDownOptions& sit_down = options.sit_down;
+    sit_down.unbalanced = {sit_down.reference_s, sit_down.duration_s, sit_down.ahead_share};
+  }
   if (unnamed("/sit_down/brake_factor")) options.sit_down.brake_factor = 1.0;
 }
 

@@ -465,6 +465,7 @@ bool Tick::lower_reference(const TickInput& input) noexcept {
 }
 
 void Tick::leave_policy(const model::RobotState& state) noexcept {
+  if (motion_.reference().gain > 0.0) sit_down_.lose_balance();
   hand_over_.finish();
   change_over_.start(sit_down_.same_torque(state.q, limiter_.last(), gains_.kp_Nm_per_rad), result_.reference.q);
   set_limiter_gains(sit_down_.gains());

@@ -13,8 +13,6 @@ constexpr double kMargin_rad = 0.0349066;  // 2 degrees
 constexpr double kMoves_rad = 1e-3;
 constexpr double kFarthest = 10.0;  // times the squat's way: beyond every limit
 constexpr int kHalvings = 50;
-/// Of half the sole: the damped robot sinks forward onto its knees and arms. Backward it would fall over its heels.
-constexpr double kAhead = 0.35;
 
 /// The robot's first moment of mass about the base [kg m], and the left foot's pose.
 struct Bodies {
@@ -37,18 +35,18 @@ void add(const RobotModel& robot, const JointVector& q, const KDL::SegmentMap::c
 }
 
 /// Of the centre of mass before its place over the sole, in the foot's frame [m].
-double ahead_of_place_m(const RobotModel& robot, const JointVector& q) {
+double ahead_of_place_m(const RobotModel& robot, const JointVector& q, double ahead_share) {
   Bodies bodies;
   bodies.moment = robot.base_inertia.getMass() * robot.base_inertia.getCOG();
   add(robot, q, robot.tree.getRootSegment(), KDL::Frame::Identity(), bodies);
   const KDL::Vector com_F = bodies.foot.Inverse() * (bodies.moment / robot.total_mass_kg);
   const FootModel& sole = robot.feet[kLeft];
-  return com_F.x() - (sole.box_center_F.x() + kAhead * sole.box_half_size_m.x());
+  return com_F.x() - (sole.box_center_F.x() + ahead_share * sole.box_half_size_m.x());
 }
 
 }  // namespace
 
-JointVector deepest_crouch(const RobotModel& robot, const JointVector& squat) {
+JointVector deepest_crouch(const RobotModel& robot, const JointVector& squat, double ahead_share) {
   const JointVector stand = robot.q_stand();
   const JointVector lower = robot.q_lower().array() + kMargin_rad, upper = robot.q_upper().array() - kMargin_rad;
   const auto moves = [&](int joint) { return std::abs(squat[joint] - stand[joint]) > kMoves_rad; };
@@ -72,7 +70,7 @@ JointVector deepest_crouch(const RobotModel& robot, const JointVector& squat) {
       const int joint = *hip[foot];
       crouch[joint] = lower[joint] + share * (upper[joint] - lower[joint]);
     }
-    return ahead_of_place_m(robot, crouch);
+    return ahead_of_place_m(robot, crouch, ahead_share);
   };
   double low = 0.0, high = 1.0;
   const bool falls = ahead_m(low) > 0.0;

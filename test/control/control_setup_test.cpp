@@ -209,6 +209,23 @@ TEST(ControlSetup, EveryTickOfAWalkWithAPolicyAllocatesAsOften) {
   EXPECT_GT(each, 0) << "the count must see ONNX Runtime's";
 }
 
+TEST(ControlSetup, AnOlderControllersLogIsReplayedWithoutWhatItDidNotName) {
+  const SitDownOptions own;
+  TickOptions options;
+  restore_options({{"sit_down", {{"duration_s", 0.9}, {"reference_s", 0.3}}}}, options);
+  EXPECT_EQ(options.generator.turn_s, 0.0);
+  EXPECT_EQ(options.rehearsal.duration_s, 0.0);
+  EXPECT_EQ(options.velocity_trim.gain_per_s, 0.0);
+  EXPECT_EQ(options.sit_down.duration_s, 0.9);
+  EXPECT_EQ(options.sit_down.brake_factor, 1.0);
+  EXPECT_EQ(options.sit_down.unbalanced.reference_s, 0.3) << "one way down, whatever happened to the policy";
+  EXPECT_EQ(options.sit_down.unbalanced.crouch_s, 0.9);
+  EXPECT_EQ(options.sit_down.unbalanced.ahead_share, own.ahead_share);
+  TickOptions older;
+  restore_options({{"supervisor", {{"stale_command_s", 0.2}}}}, older);
+  EXPECT_EQ(older.sit_down.duration_s, 0.0);
+}
+
 TEST(ControlSetup, WithoutAPolicyNoVariantIsNamed) {
   const ControlSetup setup = setup_with("none");
   const LoadedControl loaded = load_control(setup);

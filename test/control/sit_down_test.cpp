@@ -190,6 +190,38 @@ int asked_while_sitting(const std::function<void(ControlRig&)>& inject) {
 
 TEST(SitDown, ASoundPolicyBalancesTheRobotUntilTheReferenceHasStopped) { EXPECT_GE(asked_while_sitting(overheat), 29); }
 
+/// How a robot ends whose policy fails while it is asked for this speed: the last targets before the drives damp, and
+/// the bus cycles until then.
+std::pair<JointVector, int> end_without_policy(double speed_m_s) {
+  ControlRig rig(test::biped());
+  rig.reach_walk();
+  rig.drive.command[kVx] = speed_m_s;
+  rig.run(1.0);
+  rig.align(0);
+  rig.policy->how = BreakablePolicy::Break::kNotANumber;
+  JointVector last;
+  int cycles = 0;
+  for (; cycles < 1000 && !rig.bus.damping(); ++cycles) {
+    rig.cycle();
+    if (rig.sits()) last = rig.bus.last_command.q;
+  }
+  EXPECT_EQ(rig.fault(), faults::FaultCode::kPolicyNotFinite);
+  return {last, cycles};
+}
+
+TEST(SitDown, AWalkingRobotThatNoPolicyBalancesIsLowSoonerAndFartherAhead) {
+  SitDown expected(test::biped(), test::clips(test::biped()), {}, {});
+  const JointVector balanced = expected.crouch();
+  expected.lose_balance();
+  const JointVector unbalanced = expected.crouch();
+  ASSERT_GT((unbalanced - balanced).norm(), 0.01);
+  const auto [stood, stood_cycles] = end_without_policy(0.0);
+  const auto [walked, walked_cycles] = end_without_policy(0.3);
+  EXPECT_LT((stood - balanced).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_LT((walked - unbalanced).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_EQ(walked_cycles, stood_cycles - 100) << "docs/reference/safety.md";
+}
+
 /// The makers of targets in a walk's last tick and of the 1.2 s from what `inject` does, each once.
 std::vector<TargetMaker> makers_after(const std::function<void(ControlRig&)>& inject) {
   ControlRig rig(test::biped());
@@ -366,6 +398,10 @@ TEST(SitDown, RefusesOptionsThatCannotBe) {
   EXPECT_THROW(make({.duration_s = 1.0, .settle_s = 0.1}), std::invalid_argument);
   EXPECT_THROW(make({.duration_s = -0.1}), std::invalid_argument);
   EXPECT_THROW(make({.duration_s = 0.3, .reference_s = 0.3}), std::invalid_argument);
+  EXPECT_THROW(make({.unbalanced = {.reference_s = 0.8}}), std::invalid_argument);
+  EXPECT_THROW(make({.unbalanced = {.crouch_s = 0.96}}), std::invalid_argument);
+  EXPECT_THROW(make({.unbalanced = {.ahead_share = 1.0}}), std::invalid_argument);
+  EXPECT_THROW(make({.ahead_share = -1.0}), std::invalid_argument);
   EXPECT_THROW(make({.height_rate_m_s = 0.0}), std::invalid_argument);
   EXPECT_THROW(make({.brake_factor = 0.9}), std::invalid_argument);
 }
