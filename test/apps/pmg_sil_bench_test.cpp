@@ -21,6 +21,8 @@ using testing::HasSubstr;
 
 class RobotBench : public testing::Test {
  protected:
+  RobotBench() { fs::create_directories(folder_); }
+
   int run(const std::string& program, const std::vector<std::string>& arguments) {
     test::RunningProgram running(program, arguments, folder_);
     const int code = running.wait();
@@ -37,7 +39,7 @@ class RobotBench : public testing::Test {
   }
 
   const test::TemporaryFolder temporary_;
-  const fs::path& folder_ = temporary_.path();
+  const fs::path folder_ = temporary_.file("a bench");
   std::string out_, err_;
 };
 
