@@ -75,6 +75,61 @@ std::optional<Eigen::Vector3d> leans(const model::RobotModel& robot, const Joint
   return way.normalized();
 }
 
+/// How far an angle is out of the joint's range; negative: within it.
+double beyond_range_rad(const model::Joint& joint, double q_rad) {
+  return std::max(joint.lower_rad - q_rad, q_rad - joint.upper_rad);
+}
+
+/// The joint lies on a stop, or would if its motor turned the other way round.
+bool lies_on_stop(const model::Joint& joint, double q_rad) {
+  return std::max(beyond_range_rad(joint, q_rad), beyond_range_rad(joint, -q_rad)) > -kOnStop_rad;
+}
+
+/// Something ended the joint's way where its range would end if its motor turned the other way round, and doesn't.
+bool stopped_as_inverted(const model::Joint& joint, double start_rad, double q_rad) {
+  const bool up = q_rad > start_rad;
+  const double stop_rad = up ? joint.upper_rad : joint.lower_rad,
+               inverted_rad = up ? -joint.lower_rad : -joint.upper_rad;
+  return std::abs(q_rad - start_rad) >= kCame_rad && std::abs(q_rad - inverted_rad) <= kNearStop_rad &&
+         std::abs(q_rad - stop_rad) > 2.0 * kNearStop_rad;
+}
+
+bool up_short(const Wiggle& wiggle) { return is_short(wiggle.asked_rad, wiggle.moved_rad, kNoWay_rad); }
+bool down_short(const Wiggle& wiggle) { return is_short(wiggle.asked_down_rad, wiggle.moved_down_rad, kLeastWay_rad); }
+
+/// What says something of the direction.
+struct Witness {
+  const char* name;
+  bool right;
+};
+
+/// (measured) => the load's word, if it has one: one way round explains what was held, the other doesn't by far.
+std::optional<Witness> of_load(const Wiggle& wiggle) {
+  const auto off_Nm = [&wiggle](double model_Nm) { return std::abs(wiggle.held_Nm - model_Nm); };
+  const auto explains = [&](double model_Nm, double other_Nm) {
+    return off_Nm(model_Nm) < off_Nm(other_Nm) && off_Nm(other_Nm) > kRuledOut * wiggle.friction_Nm &&
+           off_Nm(model_Nm) <= std::max(wiggle.friction_Nm, kExplains * std::abs(model_Nm));
+  };
+  if (wiggle.on_stop) return {};
+  if (explains(wiggle.model_Nm, wiggle.model_inverted_Nm)) return Witness{"its load", true};
+  if (explains(wiggle.model_inverted_Nm, wiggle.model_Nm)) return Witness{"its load", false};
+  return {};
+}
+
+std::optional<Witness> of_lean(const Wiggle& wiggle) {
+  if (!wiggle.leaned_rad || std::abs(*wiggle.leaned_rad) < wiggle.least_lean_rad) return {};
+  return Witness{"the base that leans", *wiggle.leaned_rad > 0.0};
+}
+
+/// Its zero is right: the same is presumed where the load is compared.
+std::optional<Witness> of_range(const Wiggle& wiggle) {
+  if (wiggle.inverted_beyond_rad < kSureOfRange_rad) return {};
+  return Witness{"its range", true};
+}
+
+constexpr const char* kStoppedAsInverted =
+    "where its range ends the other way round: `direction` in robot.yaml is wrong, or the zero, or something blocks it";
+
 }  // namespace
 
 double telling_way_rad(const model::RobotModel& robot, const JointVector& q, const std::string& joint,
@@ -84,7 +139,7 @@ double telling_way_rad(const model::RobotModel& robot, const JointVector& q, con
   const double share = kWayMargin * kSure * friction_Nm / std::max(load.gravity_Nm, 1e-9);
   const double gear_rad = std::clamp(std::asin(std::min(share, 1.0)), kLeastWay_rad, kMostWay_rad);
   const bool load_tells =
-      2.0 * load.gravity_Nm * std::abs(std::sin(load.hangs_at_rad)) > kWayMargin * kSureOfMean * friction_Nm;
+      2.0 * load.gravity_Nm * std::abs(std::sin(load.hangs_at_rad)) > kWayMargin * kRuledOut * friction_Nm;
   return load_tells ? gear_rad : std::max(gear_rad, kLeanWay_rad);
 }
 
@@ -98,9 +153,7 @@ Wiggle wiggle(const model::RobotModel& robot, const JointVector& q, const BusSet
     if (plumb != nullptr) plumb->hear(message);
   });
   const double start_rad = one.reading().q_rad;
-  const auto in_range = [&joint](double q_rad) {
-    return q_rad >= joint.lower_rad - kOnStop_rad && q_rad <= joint.upper_rad + kOnStop_rad;
-  };
+  const auto in_range = [&joint](double q_rad) { return beyond_range_rad(joint, q_rad) <= kOnStop_rad; };
   if (!in_range(start_rad)) {
     throw std::runtime_error(
         fmt::format("{} is at {:.3f} rad; expected a start within {:.3f} to {:.3f} rad: {}", name_of(bus, motor),
@@ -118,6 +171,7 @@ Wiggle wiggle(const model::RobotModel& robot, const JointVector& q, const BusSet
 
   double target_rad = start_rad;
   const auto go_to = [&](double end_rad) {
+    const double began_rad = one.reading().q_rad;
     End end;
     for (int settled = 0; settled < kSettleCycles;) {
       if (interrupted && interrupted()) throw std::runtime_error("interrupted; the motor is switched off");
@@ -127,9 +181,12 @@ Wiggle wiggle(const model::RobotModel& robot, const JointVector& q, const BusSet
                     .kd_Nm_s_per_rad = share * joint.kd_Nm_s_per_rad});
       if (std::abs(one.reading().torque_Nm) > most_Nm)
         throw std::runtime_error(
-            fmt::format("{} meets {:.1f} Nm; expected {:.1f} Nm at most on this way: something blocks it, or gear or "
-                        "zero are wrong; it is switched off",
-                        name_of(bus, motor), std::abs(one.reading().torque_Nm), most_Nm));
+            fmt::format("{} meets {:.1f} Nm; expected {:.1f} Nm at most on this way: {}; it is "
+                        "switched off",
+                        name_of(bus, motor), std::abs(one.reading().torque_Nm), most_Nm,
+                        stopped_as_inverted(joint, began_rad, one.reading().q_rad)
+                            ? std::string("it stopped ") + kStoppedAsInverted
+                            : "something blocks it, or gear or zero are wrong"));
       const auto plumbed = plumb != nullptr ? plumb->sample(motion.at(one.reading().q_rad)) : std::nullopt;
       if (target_rad != end_rad) continue;
       ++settled;
@@ -143,7 +200,8 @@ Wiggle wiggle(const model::RobotModel& robot, const JointVector& q, const BusSet
   const End begin = go_to(start_rad), highest = go_to(up), lowest = go_to(low), back = go_to(start_rad);
 
   const double model_up_Nm = motion.holding_Nm(highest, hanging), model_low_Nm = motion.holding_Nm(lowest, hanging);
-  const bool up_pulls_more = std::abs(model_up_Nm) > std::abs(model_low_Nm);
+  const bool up_on_stop = lies_on_stop(joint, highest.q_rad), low_on_stop = lies_on_stop(joint, lowest.q_rad);
+  const bool up_pulls_more = low_on_stop || (!up_on_stop && std::abs(model_up_Nm) > std::abs(model_low_Nm));
   Wiggle result;
   result.asked_rad = up - start_rad;
   result.moved_rad = highest.q_rad - start_rad;
@@ -153,10 +211,15 @@ Wiggle wiggle(const model::RobotModel& robot, const JointVector& q, const BusSet
   result.held_Nm = 0.5 * (highest.torque_Nm + lowest.torque_Nm);
   result.model_Nm = 0.5 * (model_up_Nm + model_low_Nm);
   result.model_inverted_Nm = 0.5 * (motion.inverted_Nm(highest, hanging) + motion.inverted_Nm(lowest, hanging));
+  result.on_stop = up_on_stop || low_on_stop;
   result.held_end_Nm = up_pulls_more ? highest.torque_Nm : lowest.torque_Nm;
-  result.model_end_Nm = up_pulls_more ? model_up_Nm : model_low_Nm;
+  result.model_end_Nm = up_on_stop && low_on_stop ? 0.0 : (up_pulls_more ? model_up_Nm : model_low_Nm);
   result.inverted_end_Nm = motion.inverted_Nm(up_pulls_more ? highest : lowest, hanging);
   result.friction_Nm = joint.friction_Nm + motor.drive->torque_step_Nm();
+  result.inverted_beyond_rad =
+      std::max(beyond_range_rad(joint, -highest.q_rad), beyond_range_rad(joint, -lowest.q_rad));
+  result.stopped_as_inverted = (up_short(result) && stopped_as_inverted(joint, start_rad, highest.q_rad)) ||
+                               (down_short(result) && stopped_as_inverted(joint, highest.q_rad, lowest.q_rad));
   const auto at_begin = begin.plumb.mean(), at_back = back.plumb.mean(), at_highest = highest.plumb.mean(),
              at_lowest = lowest.plumb.mean();
   if (!at_begin || !at_back || !at_highest || !at_lowest) return result;
@@ -202,26 +265,26 @@ Verdict verdict(const Wiggle& wiggle) {
   constexpr const char* kLeastAsked =
       "it moved less than half the way: a brake, a stop, another limb, too much friction, "
       "or another joint's motor";
-  const bool up_short = is_short(wiggle.asked_rad, wiggle.moved_rad, kNoWay_rad);
-  const bool down_short = is_short(wiggle.asked_down_rad, wiggle.moved_down_rad, kLeastWay_rad);
-  if (up_short && wiggle.moved_rad < 0.0)
+  if (up_short(wiggle) && wiggle.moved_rad < 0.0)
     return {Tells::kWrong,
             "it moved the other way than its own drive was told: position and torque of the drive have "
             "opposite signs"};
-  if (up_short || down_short) return {Tells::kWrong, kLeastAsked};
-  // Where load and lean both tell the direction, they must agree.
-  const double apart_Nm = std::abs(wiggle.model_Nm - wiggle.model_inverted_Nm);
-  const bool load_tells = apart_Nm >= kSureOfMean * wiggle.friction_Nm;
-  const bool load_agrees =
-      std::abs(wiggle.held_Nm - wiggle.model_inverted_Nm) >= std::abs(wiggle.held_Nm - wiggle.model_Nm);
-  const bool lean_tells = wiggle.leaned_rad && std::abs(*wiggle.leaned_rad) >= wiggle.least_lean_rad;
-  const bool lean_agrees = lean_tells && *wiggle.leaned_rad > 0.0;
-  if (load_tells && lean_tells && load_agrees != lean_agrees)
+  if (wiggle.stopped_as_inverted)
+    return {Tells::kWrong, fmt::format("it moved less than half the way and stopped {}", kStoppedAsInverted)};
+  if (up_short(wiggle) || down_short(wiggle)) return {Tells::kWrong, kLeastAsked};
+  // Where several tell the direction, they must agree.
+  const auto load = of_load(wiggle), lean = of_lean(wiggle);
+  std::vector<Witness> all;
+  for (const std::optional<Witness>& one : {load, lean, of_range(wiggle)}) {
+    if (one) all.push_back(*one);
+  }
+  for (const Witness& one : all) {
+    if (one.right == all.front().right) continue;
     return {Tells::kNotAll,
-            fmt::format("its load says that `direction` is {}, the base that leans says the opposite: compare the way "
-                        "with the eye",
-                        load_agrees ? "right" : "wrong")};
-  if (lean_tells && !lean_agrees)
+            fmt::format("{} says that `direction` is {}, {} says the opposite: compare the way with the eye",
+                        all.front().name, all.front().right ? "right" : "wrong", one.name)};
+  }
+  if (lean && !lean->right)
     return {Tells::kWrong, "the base leans the other way than the model's: `direction` in robot.yaml is wrong"};
   const bool gear_known = std::abs(wiggle.model_end_Nm) >= kSure * wiggle.friction_Nm;
   // An end's torque has the friction in it, once.
@@ -230,18 +293,16 @@ Verdict verdict(const Wiggle& wiggle) {
         std::minmax({0.5 * end_Nm - wiggle.friction_Nm, 2.0 * end_Nm + wiggle.friction_Nm});
     return wiggle.held_end_Nm >= lower_Nm && wiggle.held_end_Nm <= upper_Nm;
   };
-  const bool inverted = load_tells && !load_agrees && carries(wiggle.inverted_end_Nm);
+  const bool load_pulls_back = load && !load->right, inverted = load_pulls_back && carries(wiggle.inverted_end_Nm);
   if (gear_known && !carries(wiggle.model_end_Nm) && !inverted)
     return {
         Tells::kWrong,
         fmt::format("the drive holds {:.1f} times the model's load: look at `gear`, at the drive's torque constant, "
                     "and at the joint's zero",
                     wiggle.held_end_Nm / wiggle.model_end_Nm)};
-  const bool direction_known = load_tells || lean_tells;
-  if (load_tells && !load_agrees)
+  const bool direction_known = !all.empty();
+  if (load_pulls_back)
     return {Tells::kWrong, "the load pulls the other way than the model's: `direction` in robot.yaml is wrong"};
-  if (lean_tells && !lean_agrees)
-    return {Tells::kWrong, "the base leans the other way than the model's: `direction` in robot.yaml is wrong"};
   if (direction_known && gear_known) return {Tells::kAgrees, "direction and gear agree with the model"};
   if (gear_known)
     return {Tells::kNotAll,

@@ -33,6 +33,10 @@ struct Wiggle {
   double held_end_Nm = 0.0, model_end_Nm = 0.0;  ///< drive's and model's torque at the end where the load pulls more
   double inverted_end_Nm = 0.0;                  ///< the model's there, if the motor turned the other way round
   double friction_Nm = 0.0;                      ///< within which torques can't be compared
+  bool on_stop = false;  ///< an end lies on a stop, which holds some of the load: the mean can't be compared
+  /// How far the way would be out of the joint's range if the motor turned the other way round; negative: within it.
+  double inverted_beyond_rad = -1.0;
+  bool stopped_as_inverted = false;  ///< a way ended where the other way round the joint's range does
   /// How far the base leaned the way that the model says from one end to the other; negative: the opposite way.
   /// Nullopt: no IMU, or the model doesn't say.
   std::optional<double> leaned_rad{};

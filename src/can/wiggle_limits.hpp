@@ -19,6 +19,15 @@ inline constexpr double kSureOfLean = 2.0;  // times what the base lacks when th
 inline constexpr double kLeastTurn = 0.3;
 // Frictions that a load must have to be compared; friction of opposite ways cancels out of the mean of both.
 inline constexpr double kSure = 3.0, kSureOfMean = 1.0;
+// What one way round would hold is ruled out when the mean of both ways is more frictions off than this; it was off by
+// up to 1.4 for the right one where nothing touched the limb: the base still moves a little. The other explains the
+// mean within one friction, or within this share of itself: a drive's torque constant.
+inline constexpr double kRuledOut = 2.0, kExplains = 0.3;
+// By which a way, mirrored, leaves the joint's range: a zero that was set by eye is off by less.
+inline constexpr double kSureOfRange_rad = 10.0 * kRadPerDegree;
+// What a stop gives way, and the zero's error, where something ends a way. A joint that didn't come there may be
+// braked.
+inline constexpr double kNearStop_rad = 3.0 * kRadPerDegree, kCame_rad = 1.0 * kRadPerDegree;
 
 /// It moved less than it should have. Where a joint lies on its stop, a way is too short to tell.
 constexpr bool is_short(double asked_rad, double moved_rad, double telling_rad) {

@@ -14,6 +14,7 @@
 #include "apps/running_program.hpp"
 #include "folders.hpp"
 #include "io/log_reader.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg {
 namespace {
@@ -29,7 +30,6 @@ constexpr double kPromised_s = 1.0;  ///< from Ctrl-C to the end, on an idle pro
 class Interruption : public testing::Test {
  protected:
   Interruption() { fs::create_directories(folder_); }
-  ~Interruption() override { fs::remove_all(folder_); }
 
   std::string at(const std::string& name) const { return (folder_ / name).string(); }
   std::string scenario(double seconds) const {
@@ -46,9 +46,8 @@ class Interruption : public testing::Test {
     return std::atoi(test::text_of(folder_ / "frames").c_str());
   }
 
-  const fs::path folder_ =
-      fs::path(testing::TempDir()) /
-      ("interruption " + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  const test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.file("an interruption");
 };
 
 TEST_F(Interruption, AFilmUntilCtrlCIsWholeAndTheRunIsKept) {

@@ -11,6 +11,7 @@
 #include "effects/fit_words.hpp"
 #include "recorded_benches.hpp"
 #include "sim/motor_file.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg {
 namespace {
@@ -28,7 +29,6 @@ class PmgCalibrateMotor : public testing::Test {
     truth_.actuator.friction.coulomb_Nm = 0.3;
     test::write_bench(folder_ / "servo", test::record(test::pd_bench(true), truth_, 4, 1e-3));
   }
-  ~PmgCalibrateMotor() override { fs::remove_all(folder_); }
 
   test::Finished run(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), (folder_ / "servo").string());
@@ -37,8 +37,8 @@ class PmgCalibrateMotor : public testing::Test {
     return program.finish();
   }
   calib::JointModel truth_;
-  const fs::path folder_ = fs::path(testing::TempDir()) /
-                           ("calibrate " + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  const test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.file("a calibration");
   const fs::path out_ = folder_ / "out";
 };
 

@@ -7,6 +7,7 @@
 
 #include "apps/running_program.hpp"
 #include "sim/motor_file.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg {
 namespace {
@@ -16,11 +17,7 @@ using testing::HasSubstr;
 
 class PmgCalibrateZero : public testing::Test {
  protected:
-  PmgCalibrateZero() {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~PmgCalibrateZero() override { fs::remove_all(folder_); }
+  PmgCalibrateZero() { fs::create_directories(folder_); }
 
   test::Finished run(const std::string& program_name, const std::vector<std::string>& arguments) const {
     test::RunningProgram program(program_name, arguments, folder_);
@@ -30,8 +27,8 @@ class PmgCalibrateZero : public testing::Test {
     const test::Finished done = run("pmg_calibrate_zero", {"--robot", "z1", "--make-stances", stances_.string()});
     ASSERT_EQ(done.exit_code, 0) << done.err;
   }
-  const fs::path folder_ = fs::path(testing::TempDir()) /
-                           ("zero " + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  const test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.file("a zero");
   const fs::path stances_ = folder_ / "stances", out_ = folder_ / "out";
 };
 

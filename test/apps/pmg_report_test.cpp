@@ -7,6 +7,7 @@
 
 #include "apps/running_program.hpp"
 #include "report/small_log.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg {
 namespace {
@@ -17,7 +18,6 @@ using testing::HasSubstr;
 class PmgReport : public testing::Test {
  protected:
   PmgReport() { fs::create_directories(folder_); }
-  ~PmgReport() override { fs::remove_all(folder_); }
 
   test::Finished run(const std::vector<std::string>& arguments) const {
     test::RunningProgram program("pmg_report", arguments, folder_);
@@ -27,8 +27,8 @@ class PmgReport : public testing::Test {
     content.write(folder_ / name);
     return (folder_ / name).string();
   }
-  const fs::path folder_ = fs::path(testing::TempDir()) /
-                           ("report " + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  const test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.file("a report");
   const std::string page_ = (folder_ / "page.html").string();
 };
 

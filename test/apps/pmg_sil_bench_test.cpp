@@ -11,6 +11,7 @@
 #include "apps/running_program.hpp"
 #include "folders.hpp"
 #include "sim/motors_in_force.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg {
 namespace {
@@ -21,7 +22,6 @@ using testing::HasSubstr;
 class RobotBench : public testing::Test {
  protected:
   RobotBench() { fs::create_directories(folder_); }
-  ~RobotBench() override { fs::remove_all(folder_); }
 
   int run(const std::string& program, const std::vector<std::string>& arguments) {
     test::RunningProgram running(program, arguments, folder_);
@@ -38,8 +38,8 @@ class RobotBench : public testing::Test {
     ASSERT_EQ(run("pmg_calibrate_motor", arguments), 0) << err_;
   }
 
-  const fs::path folder_ = fs::path(testing::TempDir()) /
-                           ("bench " + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  const test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.file("a bench");
   std::string out_, err_;
 };
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "apps/running_program.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg {
 namespace {
@@ -26,7 +27,6 @@ using testing::StartsWith;
 class Words : public testing::Test {
  protected:
   Words() { fs::create_directories(folder_); }
-  ~Words() override { fs::remove_all(folder_); }
 
   /// Arguments separated by blanks.
   test::Finished run(const std::string& line) const {
@@ -46,8 +46,8 @@ class Words : public testing::Test {
     EXPECT_EQ(refused.out, "") << command;
   }
 
-  const fs::path folder_ = fs::path(testing::TempDir()) /
-                           ("words_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  const test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.file("words");
 };
 
 const std::vector<std::string> kPrograms = {"pmg_bus",

@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "calib/synthetic_bench.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg {
 namespace {
@@ -24,7 +25,6 @@ class BenchFiles : public testing::Test {
     model.actuator.transmission.armature_kg_m2 = 0.02;
     test::write_bench(folder_, test::record(test::pd_bench(true), model, 3));
   }
-  ~BenchFiles() override { fs::remove_all(folder_); }
 
   std::string refusal(const std::string& filter = "") const {
     try {
@@ -57,8 +57,8 @@ class BenchFiles : public testing::Test {
   }
   static std::string join(const std::vector<std::string>& c) { return c[0] + "," + c[1] + "," + c[2]; }
 
-  const fs::path folder_ = fs::path(testing::TempDir()) /
-                           ("bench " + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  const test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.file("a bench");
 };
 
 // Without it the fit took a gain of 1 for one of hundreds, and ended with a file.

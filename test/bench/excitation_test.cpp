@@ -9,6 +9,7 @@
 #include <set>
 
 #include "bench/bench.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg::bench {
 namespace {
@@ -23,7 +24,6 @@ const std::vector<ExcitationGains> kGains = {{60.0, 2.0}, {30.0, 2.0}, {30.0, 1.
 
 class ExcitationFiles : public testing::Test {
  protected:
-  ~ExcitationFiles() override { fs::remove_all(folder_); }
   std::string refusal() const {
     try {
       read_excitation(folder_);
@@ -32,8 +32,8 @@ class ExcitationFiles : public testing::Test {
     }
     return "";
   }
-  const fs::path folder_ = fs::path(testing::TempDir()) /
-                           ("excitation " + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+  const test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.file("an excitation");
 };
 
 TEST(Excitation, OfARobotsJointStaysWellWithinItsRangeAndHasTwoDampings) {

@@ -10,6 +10,7 @@
 
 #include "report/run_figures.hpp"
 #include "small_log.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg::report {
 namespace {
@@ -22,13 +23,13 @@ using testing::Not;
 class RunReport : public testing::Test {
  protected:
   RunReport() { fs::create_directories(folder_); }
-  ~RunReport() override { fs::remove_all(folder_); }
 
   RunSeries run(const SmallLog& log, const std::string& name = "log.lcm") const {
     log.write(folder_ / name);
     return read_run(folder_ / name);
   }
-  const fs::path folder_ = fs::path(testing::TempDir()) / testing::UnitTest::GetInstance()->current_test_info()->name();
+  const test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.file("run");
 };
 
 TEST_F(RunReport, ShowsEverySection) {

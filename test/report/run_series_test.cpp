@@ -10,6 +10,7 @@
 #include "report/measured_command.hpp"
 #include "report/run_figures.hpp"
 #include "small_log.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg::report {
 namespace {
@@ -27,13 +28,13 @@ using testing::IsEmpty;
 class RunSeriesTest : public testing::Test {
  protected:
   RunSeriesTest() { fs::create_directories(folder_); }
-  ~RunSeriesTest() override { fs::remove_all(folder_); }
 
   fs::path write(const SmallLog& log, const std::string& name = "log.lcm") const {
     log.write(folder_ / name);
     return folder_ / name;
   }
-  const fs::path folder_ = fs::path(testing::TempDir()) / testing::UnitTest::GetInstance()->current_test_info()->name();
+  const test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.file("run");
 };
 
 TEST_F(RunSeriesTest, HoldsEveryTickOfEveryChannelFromTheLogsBeginning) {
