@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -22,7 +23,7 @@ constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 struct Pair {
   bench::Column column;
   std::string expected;  ///< in words
-  std::vector<double> (*of)(const bench::Bench&, const bench::BenchRun&);
+  std::function<std::vector<double>(const bench::Bench&, const bench::BenchRun&)> of;
   std::vector<WrongUnit> units;
   double may_lag_s;       ///< a reading may be filtered
   double strange_factor;  ///< a factor beyond it is a fault though no unit is known for it
@@ -45,17 +46,46 @@ std::vector<double> derivative_of_commands(const bench::Bench&, const bench::Ben
   return found;
 }
 
-/// Output of the drive's law for the recorded errors, in Nm or V; unknown at the limit.
-std::vector<double> output_of_law(const bench::Bench& bench, const bench::BenchRun& run) {
-  bench::BenchRun computed = run;
-  computed.recording.torque_Nm.clear();
-  evidence::Motion motion = evidence::motion(bench, computed);
-  for (std::size_t k = 0; k < motion.drive.size(); ++k) {
-    const bool on = run.recording.enabled.empty() || run.recording.enabled[k];
-    if (motion.at_limit[k] || !on || !run.recording.valid[k]) motion.drive[k] = kNothing;
+/// A column this long ago, between its samples linearly; its first value before them.
+std::vector<double> delayed(const std::vector<double>& t_s, const std::vector<double>& values, double delay_s) {
+  std::vector<double> found = values;
+  std::size_t before = 0;
+  for (std::size_t k = 0; k < values.size() && t_s.size() > 1; ++k) {
+    const double then_s = std::max(t_s[k] - delay_s, t_s.front());
+    while (before + 2 < t_s.size() && t_s[before + 1] <= then_s) ++before;
+    const double share = std::clamp((then_s - t_s[before]) / (t_s[before + 1] - t_s[before]), 0.0, 1.0);
+    found[k] = values[before] + share * (values[before + 1] - values[before]);
   }
-  return motion.drive;
+  return found;
 }
+
+/// What the drive's law gives for a run's readings, in Nm or V.
+class LawOutput {
+ public:
+  LawOutput(const bench::Bench& bench, const bench::BenchRun& run) : bench_(bench), run_(run), computed_(run) {
+    computed_.recording.torque_Nm.clear();
+    motion_ = evidence::motion(bench, computed_);
+  }
+  /// With the commands of `delay_s` before; unknown at the limit.
+  std::vector<double> after(double delay_s) {
+    const bench::Recording& r = run_.recording;
+    bench::Recording& late = computed_.recording;
+    for (auto commands : {&bench::Recording::q_cmd_rad, &bench::Recording::dq_cmd_rad_s, &bench::Recording::tau_ff_Nm})
+      if (!(r.*commands).empty()) late.*commands = delayed(r.t_s, r.*commands, delay_s);
+    evidence::compute_drive(bench_, computed_, motion_);
+    for (std::size_t k = 0; k < motion_.drive.size(); ++k) {
+      const bool on = r.enabled.empty() || r.enabled[k];
+      if (motion_.at_limit[k] || !on || !r.valid[k]) motion_.drive[k] = kNothing;
+    }
+    return motion_.drive;
+  }
+
+ private:
+  const bench::Bench& bench_;
+  const bench::BenchRun& run_;
+  bench::BenchRun computed_;
+  evidence::Motion motion_;
+};
 
 struct Finding {
   std::size_t run;
@@ -151,6 +181,31 @@ void check(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs, 
   }
 }
 
+/// How long ago the commands were given that the drives follow, [s]: at high gains a delay's error of position exceeds
+/// what makes the torque. The model's delay comes from the readings; a command that is held acts up to a sample later.
+/// Of these the delay at which the law's output and the column are most alike, whatever lies between them in time: the
+/// median over some of the runs.
+double delay_of_commands_s(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs, bench::Column column,
+                           double model_delay_s, const DataFaultOptions& o) {
+  constexpr std::size_t kRuns = 8;
+  constexpr std::array kHeld = {0.0, 0.25, 0.5, 0.75, 1.0, 1.25};  // samples
+  const double sample_s = 1.0 / bench.sample_rate_hz;
+  std::array<std::vector<double>, kHeld.size()> alike;
+  for (std::size_t i = 0; i < runs.size(); i += (runs.size() + kRuns - 1) / kRuns) {
+    const std::vector<double>& recorded = bench::values(runs[i].recording, column);
+    if (recorded.empty()) continue;
+    LawOutput law(bench, runs[i]);
+    for (std::size_t h = 0; h < kHeld.size(); ++h) {
+      const Alignment by = align(law.after(model_delay_s + kHeld[h] * sample_s), recorded, sample_s, o.longest_shift_s,
+                                 o.longest_shift_s);
+      alike[h].push_back(by.known ? std::abs(by.correlation) : 0.0);
+    }
+  }
+  if (alike.front().empty()) return model_delay_s;
+  const auto best = std::ranges::max_element(alike, {}, [](const auto& one) { return fitting::median(one); });
+  return model_delay_s + kHeld[static_cast<std::size_t>(best - alike.begin())] * sample_s;
+}
+
 }  // namespace
 
 std::vector<WrongUnit> position_units(bool linear) {
@@ -190,12 +245,12 @@ Alignment speed_of_readings(const bench::Bench& bench, const bench::BenchRun& ru
 }
 
 std::vector<DataFault> derived_column_faults(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
-                                             const DataFaultOptions& o, bool only_commands) {
+                                             const DataFaultOptions& o, std::optional<double> model_delay_s) {
   const bool linear = bench.rig == bench::Rig::kLinear;
   std::vector<WrongUnit> speeds = position_units(linear);
   if (!linear) speeds.push_back({"revolutions per minute", 30.0 / std::numbers::pi});
   std::vector<DataFault> found;
-  if (only_commands) {
+  if (!model_delay_s) {
     check(bench, runs,
           {bench::Column::kSpeedCommand, "the derivative of the position command", derivative_of_commands, speeds, 0.0,
            o.strange_factor},
@@ -214,10 +269,13 @@ std::vector<DataFault> derived_column_faults(const bench::Bench& bench, const st
   if (bench.law == bench::DriveLaw::kTorque) return found;
   const std::vector<WrongUnit> torques = {{"thousandths", 1000.0}};
   const bool torque = bench.law == bench::DriveLaw::kPositionPd;
-  check(bench, runs,
-        {torque ? bench::Column::kTorque : bench::Column::kDriveVoltage, "the output of the drive's law", output_of_law,
-         torques, o.longest_delay_s, o.law_factor},
-        o, found);
+  const bench::Column column = torque ? bench::Column::kTorque : bench::Column::kDriveVoltage;
+  const double delay_s = delay_of_commands_s(bench, runs, column, *model_delay_s, o);
+  const auto law = [delay_s](const bench::Bench& of, const bench::BenchRun& run) {
+    return LawOutput(of, run).after(delay_s);
+  };
+  check(bench, runs, {column, "the output of the drive's law", law, torques, o.longest_delay_s, o.law_factor}, o,
+        found);
   return found;
 }
 

@@ -1,6 +1,7 @@
 // Checks of columns against each other that need no model of the joint.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,8 +34,9 @@ Alignment following(const bench::Bench& bench, const bench::BenchRun& run, doubl
 Alignment speed_of_readings(const bench::Bench& bench, const bench::BenchRun& run, double longest_s);
 
 /// Faults of columns that follow from other columns: dq_cmd from q_cmd; dq from q; a recorded torque or voltage from
-/// the drive's law. only_commands: dq_cmd alone, and only what all runs show.
+/// the drive's law, whose commands act `model_delay_s` late by the readings. Without that delay, before a model is
+/// fitted: dq_cmd alone, and only what all runs show.
 std::vector<DataFault> derived_column_faults(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
-                                             const DataFaultOptions& options, bool only_commands);
+                                             const DataFaultOptions& options, std::optional<double> model_delay_s);
 
 }  // namespace pmg::data_faults

@@ -77,10 +77,11 @@ std::vector<DataFault> find_data_faults(const bench::Bench& bench, const std::ve
   std::vector<DataFault> found;
   Examined examined(bench, runs, model, options, threads);
   take(position_faults(examined), examined, found);
-  take(derived_column_faults(bench, examined.runs(), options, true), examined, found);
+  take(derived_column_faults(bench, examined.runs(), options, {}), examined, found);
   take(trajectory_faults(examined.runs(), options), examined, found);
   take_what_the_model_tells(examined, found);
-  take(derived_column_faults(bench, examined.runs(), options, false), examined, found);
+  const double delay_s = examined.fitted().model.actuator.command.delay_s;
+  take(derived_column_faults(bench, examined.runs(), options, delay_s), examined, found);
   return found;
 }
 

@@ -46,9 +46,13 @@ void differentiate(const bench::Recording& r, double window_s, Motion& motion) {
   }
 }
 
-void drive(const bench::Bench& bench, const bench::BenchRun& run, Motion& motion) {
+}  // namespace
+
+void compute_drive(const bench::Bench& bench, const bench::BenchRun& run, Motion& motion) {
   const bench::Recording& r = run.recording;
   const auto& p = bench.known.drive;
+  motion.drive.clear();
+  motion.at_limit.clear();
   for (std::size_t k = 0; k < r.t_s.size(); ++k) {
     const bool enabled = r.enabled.empty() || r.enabled[k];
     if (!r.torque_Nm.empty()) {
@@ -70,8 +74,6 @@ void drive(const bench::Bench& bench, const bench::BenchRun& run, Motion& motion
   }
 }
 
-}  // namespace
-
 std::vector<std::size_t> command_steps(const bench::Recording& r, const StepOptions& options) {
   const auto [low, high] = std::minmax_element(r.q_cmd_rad.begin(), r.q_cmd_rad.end());
   const double smallest_rad = options.jump_share * (*high - *low);
@@ -89,7 +91,7 @@ Motion motion(const bench::Bench& bench, const bench::BenchRun& run, double wind
   const bench::Recording& r = run.recording;
   Motion motion;
   differentiate(r, window_s, motion);
-  drive(bench, run, motion);
+  compute_drive(bench, run, motion);
   motion.steps = command_steps(r, steps);
   std::size_t next = 0;
   double last_step_s = kNoMotion;

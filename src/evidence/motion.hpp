@@ -26,6 +26,9 @@ struct Motion {
 Motion motion(const bench::Bench& bench, const bench::BenchRun& run, double window_s = 0.05,
               const StepOptions& steps = {});
 
+/// Motion::drive and at_limit again, for other commands or drives: the derivatives stay.
+void compute_drive(const bench::Bench& bench, const bench::BenchRun& run, Motion& motion);
+
 /// (recording) => (samples at which the command jumps): it moves there by more than jump_ratio times its move in the
 /// samples before and after, and by more than jump_share of its range.
 std::vector<std::size_t> command_steps(const bench::Recording& recording, const StepOptions& options = {});
