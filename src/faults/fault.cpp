@@ -149,9 +149,11 @@ bool policy_is_sound_after(FaultCode code) noexcept { return row(code).policy_is
 
 Reaction reaction(FaultCode code) noexcept {
   constexpr int kSitDown = 500;  // SitDownOptions: 1 s
+  // A robot that takes steps, and that no policy balances any more, is damped sooner: UnbalancedWay.
+  const int least = row(code).policy_is_sound ? kSitDown : 400;
   const CycleRange first = row(code).first;
   if (!row(code).sit_down) return {{}, first};
-  return {first, {first.least + kSitDown, first.most + kSitDown}};
+  return {first, {first.least + least, first.most + kSitDown}};
 }
 
 const char* to_string(FaultCode code) noexcept { return row(code).name; }

@@ -66,7 +66,7 @@ struct CycleRange {
 struct Reaction {
   CycleRange sit_down, damping;
 };
-/// Of a robot that walks, with its feet on the ground.
+/// In Walk, with the feet on the ground.
 Reaction reaction(FaultCode code) noexcept;
 
 const char* to_string(FaultCode code) noexcept;

@@ -135,17 +135,23 @@ void include(int cycles, faults::CycleRange& range) {
   range.most = std::max(range.most, cycles);
 }
 
-/// Reactions over all moments between two ticks at which the cause may appear.
+/// Reactions over all moments between two ticks at which the cause may appear. Of a robot that stands; where no policy
+/// balances it afterwards, also of one that takes steps.
 faults::Reaction reaction_of(const InjectedFault& row) {
   faults::Reaction range;
-  for (int moment = 0; moment < kCyclesPerTick; ++moment) {
-    ControlRig rig(test::biped(), clips_of(row.code), options_of(row.code));
-    rig.reach_walk();
-    rig.align(moment);
-    const ControlRig::Reaction measured = rig.reaction_to([&] { row.inject(rig); });
-    EXPECT_GE(measured.to_damping, 0) << row.name << ": no reaction";
-    include(measured.to_damping, range.damping);
-    if (measured.to_sit_down >= 0) include(measured.to_sit_down, range.sit_down);
+  for (const double speed_m_s : {0.0, 0.3}) {
+    if (speed_m_s > 0.0 && faults::policy_is_sound_after(row.code)) continue;
+    for (int moment = 0; moment < kCyclesPerTick; ++moment) {
+      ControlRig rig(test::biped(), clips_of(row.code), options_of(row.code));
+      rig.reach_walk();
+      rig.drive.command[kVx] = speed_m_s;
+      rig.run(speed_m_s > 0.0 ? 0.5 : 0.0);
+      rig.align(moment);
+      const ControlRig::Reaction measured = rig.reaction_to([&] { row.inject(rig); });
+      EXPECT_GE(measured.to_damping, 0) << row.name << ": no reaction";
+      include(measured.to_damping, range.damping);
+      if (measured.to_sit_down >= 0) include(measured.to_sit_down, range.sit_down);
+    }
   }
   return range;
 }
