@@ -28,22 +28,11 @@ void cut(Recording& r, std::size_t first, std::size_t last) {
   keep(r.valid);
 }
 
-/// Value at the time t_s, linear between samples.
-double at(const std::vector<double>& t_s, const std::vector<double>& values, double wanted_s) {
-  const auto above = std::upper_bound(t_s.begin(), t_s.end(), wanted_s);
-  if (above == t_s.begin()) return values.front();
-  if (above == t_s.end()) return values.back();
-  const auto k = static_cast<std::size_t>(above - t_s.begin());
-  const double share = (wanted_s - t_s[k - 1]) / (t_s[k] - t_s[k - 1]);
-  return values[k - 1] + share * (values[k] - values[k - 1]);
-}
-
 void shift(Recording& r, const std::vector<Column>& columns, double shift_s) {
   for (const Column column : columns) {
     std::vector<double>& of = values(r, column);
     if (of.empty()) continue;
-    const std::vector<double> before = of;
-    for (std::size_t k = 0; k < of.size(); ++k) of[k] = at(r.t_s, before, r.t_s[k] + shift_s);
+    of = shifted(r.t_s, of, shift_s);
   }
   const bool position = std::find(columns.begin(), columns.end(), Column::kPosition) != columns.end();
   if (position && !r.valid.empty()) {  // a dropout moves with its reading, and spreads over the samples beside it
@@ -62,6 +51,23 @@ void shift(Recording& r, const std::vector<Column>& columns, double shift_s) {
 }
 
 }  // namespace
+
+std::vector<double> shifted(const std::vector<double>& t_s, const std::vector<double>& values, double shift_s) {
+  std::vector<double> found;
+  found.reserve(values.size());
+  for (const double now_s : t_s) {
+    const double wanted_s = now_s + shift_s;
+    const auto above = std::upper_bound(t_s.begin(), t_s.end(), wanted_s);
+    if (above == t_s.begin() || above == t_s.end()) {
+      found.push_back(above == t_s.begin() ? values.front() : values.back());
+      continue;
+    }
+    const auto k = static_cast<std::size_t>(above - t_s.begin());
+    const double share = (wanted_s - t_s[k - 1]) / (t_s[k] - t_s[k - 1]);
+    found.push_back(values[k - 1] + share * (values[k] - values[k - 1]));
+  }
+  return found;
+}
 
 std::string column_name(Column column, bool linear) {
   const std::string position = linear ? "_m" : "_rad", torque = linear ? "_N" : "_Nm";

@@ -22,6 +22,10 @@ std::string column_name(Column column, bool linear);
 std::vector<double>& values(Recording& recording, Column column);
 const std::vector<double>& values(const Recording& recording, Column column);
 
+/// (times, a column) => what the column has at t + shift_s, linear between samples; its first or last value beyond
+/// them.
+std::vector<double> shifted(const std::vector<double>& t_s, const std::vector<double>& values, double shift_s);
+
 /// Gains and load as a row of runs.csv gives them.
 struct RowConditions {
   std::string trajectory;

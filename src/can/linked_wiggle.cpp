@@ -387,7 +387,7 @@ Verdict judge_ways(const Judge<N>& judge, const std::vector<Arrangement<N>>& all
             "no arrangement of these motors explains what they held: look at `gear`, at the drives' torque "
             "constants, and at the zeros"};
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (std::isfinite(errors[i]) && (errors[i] <= kSureOfMean || errors[i] <= kBetterLoad * best))
+    if (std::isfinite(errors[i]) && (errors[i] <= kRuledOut || errors[i] <= kBetterLoad * best))
       possible.push_back(&all[i]);
   }
   std::vector<std::string> words;

@@ -17,11 +17,12 @@ inline constexpr double kLeastLean_rad = 0.5 * kRadPerDegree;  // sway and the s
 inline constexpr double kSureOfLean = 2.0;  // times what the base lacks when the joint is back: friction holds it there
 // Share of the way that a base turns which a joint turns. Less, and something else than --held holds the robot.
 inline constexpr double kLeastTurn = 0.3;
-// Frictions that a load must have to be compared; friction of opposite ways cancels out of the mean of both.
-inline constexpr double kSure = 3.0, kSureOfMean = 1.0;
-// What one way round would hold is ruled out when the mean of both ways is more frictions off than this; it was off by
-// up to 1.4 for the right one where nothing touched the limb: the base still moves a little. The other explains the
-// mean within one friction, or within this share of itself: a drive's torque constant.
+// Frictions that a load must have to be compared.
+inline constexpr double kSure = 3.0;
+// Friction of opposite ways cancels out of the mean of both. What one way round would hold is ruled out when the mean
+// of both ways is more frictions off than this; it was off by up to 1.4 for the right one where nothing touched the
+// limb: the base still moves a little. The other explains the mean within one friction, or within this share of itself:
+// a drive's torque constant.
 inline constexpr double kRuledOut = 2.0, kExplains = 0.3;
 // By which a way, mirrored, leaves the joint's range: a zero that was set by eye is off by less.
 inline constexpr double kSureOfRange_rad = 10.0 * kRadPerDegree;

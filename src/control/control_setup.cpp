@@ -188,10 +188,10 @@ void for_each_option(Options& tick, Visit&& visit) {
   visit("/velocity_trim/most_share", tick.velocity_trim.most_share);
   visit("/velocity_trim/most_miss_share", tick.velocity_trim.most_miss_share);
   visit("/velocity_trim/full_above_share", tick.velocity_trim.full_above_share);
-  visit("/sit_down/duration_s", tick.sit_down.duration_s);
+  visit("/sit_down/duration_s", tick.sit_down.balanced.crouch_s);
   visit("/sit_down/settle_s", tick.sit_down.settle_s);
-  visit("/sit_down/reference_s", tick.sit_down.reference_s);
-  visit("/sit_down/ahead_share", tick.sit_down.ahead_share);
+  visit("/sit_down/reference_s", tick.sit_down.balanced.reference_s);
+  visit("/sit_down/ahead_share", tick.sit_down.balanced.ahead_share);
   visit("/sit_down/unbalanced/reference_s", tick.sit_down.unbalanced.reference_s);
   visit("/sit_down/unbalanced/crouch_s", tick.sit_down.unbalanced.crouch_s);
   visit("/sit_down/unbalanced/ahead_share", tick.sit_down.unbalanced.ahead_share);
@@ -302,11 +302,8 @@ void restore_options(const nlohmann::ordered_json& json, TickOptions& options) {
   if (unnamed("/command/turn_s")) options.generator.turn_s = 0.0;
   if (unnamed("/rehearsal/duration_s")) options.rehearsal.duration_s = 0.0;
   if (unnamed("/velocity_trim/gain_per_s")) options.velocity_trim.gain_per_s = 0.0;
-  if (unnamed("/sit_down/duration_s")) options.sit_down.duration_s = 0.0;
-  if (unnamed("/sit_down/unbalanced/crouch_s")) {
-    SitDownOptions& sit_down = options.sit_down;
-    sit_down.unbalanced = {sit_down.reference_s, sit_down.duration_s, sit_down.ahead_share};
-  }
+  if (unnamed("/sit_down/duration_s")) options.sit_down.balanced.crouch_s = 0.0;
+  if (unnamed("/sit_down/unbalanced/crouch_s")) options.sit_down.unbalanced = options.sit_down.balanced;
   if (unnamed("/sit_down/brake_factor")) options.sit_down.brake_factor = 1.0;
 }
 

@@ -14,22 +14,21 @@ constexpr double kLongest_s = 1.0;
 constexpr double kRounding_s = 1e-6;
 
 const SitDownOptions& checked(const SitDownOptions& options) {
-  if (!(options.duration_s >= 0.0 && options.settle_s >= 0.0 &&
-        options.duration_s + options.settle_s <= kLongest_s + 1e-9)) {
-    throw std::invalid_argument("sit_down: duration_s and settle_s; expected 0 or more, and 1 s together at most");
+  if (!(options.balanced.crouch_s >= 0.0 && options.settle_s >= 0.0 &&
+        options.balanced.crouch_s + options.settle_s <= kLongest_s + 1e-9)) {
+    throw std::invalid_argument("sit_down: crouch_s and settle_s; expected 0 or more, and 1 s together at most");
   }
-  if (!(options.reference_s >= 0.0 && (options.duration_s == 0.0 || options.reference_s < options.duration_s))) {
-    throw std::invalid_argument("sit_down: reference_s; expected 0 or more, and less than duration_s");
-  }
-  const UnbalancedWay& way = options.unbalanced;
-  if (!(way.reference_s >= 0.0 &&
-        (options.duration_s == 0.0 || (way.reference_s < way.crouch_s && way.crouch_s <= options.duration_s)))) {
-    throw std::invalid_argument(
-        "sit_down: unbalanced; expected a reference_s of 0 or more, less than its crouch_s, which is at most "
-        "duration_s");
-  }
-  if (!(std::abs(options.ahead_share) < 1.0 && std::abs(way.ahead_share) < 1.0)) {
-    throw std::invalid_argument("sit_down: ahead_share; expected the centre of mass over the soles, -1 to 1");
+  for (const WayDown& way : {options.balanced, options.unbalanced}) {
+    const bool none = options.balanced.crouch_s == 0.0;
+    if (!(way.reference_s >= 0.0 && (none || way.reference_s < way.crouch_s))) {
+      throw std::invalid_argument("sit_down: reference_s; expected 0 or more, and less than crouch_s");
+    }
+    if (!(none || way.crouch_s <= options.balanced.crouch_s)) {
+      throw std::invalid_argument("sit_down: the unbalanced way; expected a crouch_s of the balanced one's at most");
+    }
+    if (!(std::abs(way.ahead_share) < 1.0)) {
+      throw std::invalid_argument("sit_down: ahead_share; expected the centre of mass over the soles, -1 to 1");
+    }
   }
   if (!(options.brake_factor >= 1.0 && options.height_rate_m_s > 0.0)) {
     throw std::invalid_argument("sit_down: brake_factor and height_rate_m_s; expected 1 or more, and more than 0");
@@ -59,14 +58,12 @@ SitDown::SitDown(const model::RobotModel& robot, const ClipLibrary& library, con
       brake_kd_((options.brake_factor * own_.kd_Nm_s_per_rad).cwiseMin(guard.max_kd_Nm_s_per_rad)),
       squat_rad_(library.q_stand) {
   const StaticClip& height = library.posture[kHeight - kVelocityChannels];
-  if (options_.duration_s == 0.0 || height.command.empty() || height.command.front() >= 0.0) return;
+  if (options_.balanced.crouch_s == 0.0 || height.command.empty() || height.command.front() >= 0.0) return;
   lowest_m_ = height.command.front();
   squat_rad_ = height.q.front();
-  crouches_ = {model::deepest_crouch(robot, height.q.front(), options_.ahead_share),
+  crouches_ = {model::deepest_crouch(robot, height.q.front(), options_.balanced.ahead_share),
                model::deepest_crouch(robot, height.q.front(), options_.unbalanced.ahead_share)};
 }
-
-double SitDown::crouch_s() const noexcept { return unbalanced_ ? options_.unbalanced.crouch_s : options_.duration_s; }
 
 void SitDown::start(std::int64_t now_ns) noexcept {
   stage_ = lowest_m_ < 0.0 ? Stage::kReference : Stage::kNone;
@@ -91,7 +88,7 @@ void SitDown::lower_joints(const JointVector& q, const JointVector& q_des, const
 
 SitDown::Stage SitDown::stage(std::int64_t now_ns) noexcept {
   const bool lowered = stage_ == Stage::kReference || stage_ == Stage::kJoints;
-  if (lowered && seconds(now_ns - start_ns_) > crouch_s() + options_.settle_s - kRounding_s) {
+  if (lowered && seconds(now_ns - start_ns_) > way().crouch_s + options_.settle_s - kRounding_s) {
     stage_ = Stage::kDamped;
   }
   return stage_;
@@ -103,12 +100,11 @@ bool SitDown::active(std::int64_t now_ns) noexcept {
 }
 
 bool SitDown::reference_is_due(std::int64_t now_ns) const noexcept {
-  const double due_s = unbalanced_ ? options_.unbalanced.reference_s : options_.reference_s;
-  return seconds(now_ns - start_ns_) < due_s - kRounding_s;
+  return seconds(now_ns - start_ns_) < way().reference_s - kRounding_s;
 }
 
 void SitDown::step(std::int64_t now_ns, model::JointCommand& command) const noexcept {
-  const double whole_s = crouch_s() - seconds(joints_start_ns_ - start_ns_);
+  const double whole_s = way().crouch_s - seconds(joints_start_ns_ - start_ns_);
   const double gone_s = seconds(now_ns - joints_start_ns_);
   command.q = from_ + share_of_way(gone_s < whole_s ? gone_s / whole_s : 1.0) * (crouch() - from_);
   command.dq.setZero();

@@ -13,25 +13,25 @@
 
 namespace pmg::control {
 
-/// The way down of a robot that walked and that no policy balances any more. Many tip forward meanwhile: so they are
-/// low sooner, and meet the ground with their knees first. The torso's median peak speed is 1.6, 1.4 and 1.4 m/s of
-/// three times 20 robots, the largest 2.4; by the way of a balanced robot 2.3, 1.3 and 1.3 m/s, and 2.8.
-struct UnbalancedWay {
-  double reference_s = 0.35;  ///< SitDownOptions::reference_s
-  double crouch_s = 0.75;     ///< from the fault to the crouch
-  double ahead_share = 0.7;   ///< SitDownOptions::ahead_share
+/// From the fault to the crouch.
+struct WayDown {
+  double crouch_s;  ///< to the crouch
+  /// Of it a walking robot's reference stops and goes down by its height channel, balanced by the policy if that is
+  /// sound; then the joints are lowered.
+  double reference_s;
+  /// The crouch's centre of mass before the soles' centres, in half lengths of a sole: the damped robot sinks forward
+  /// onto its knees and arms. Backward it would fall over its heels.
+  double ahead_share;
 };
 
 struct SitDownOptions {
-  double duration_s = 0.95;  ///< from the fault to the crouch, balanced; 0: every fault damps at once
-  double settle_s = 0.05;    ///< in the crouch, before the drives damp
-  /// Of this duration a walking robot's reference stops and goes down by its height channel, balanced by the policy if
-  /// that is sound; then the joints are lowered.
-  double reference_s = 0.4;
-  /// The crouch's centre of mass before the soles' centres, in half lengths of a sole: the damped robot sinks forward
-  /// onto its knees and arms. Backward it would fall over its heels.
-  double ahead_share = 0.35;
-  UnbalancedWay unbalanced{};
+  /// Of every robot but the unbalanced. crouch_s 0: every fault damps at once.
+  WayDown balanced{.crouch_s = 0.95, .reference_s = 0.4, .ahead_share = 0.35};
+  /// Of a robot that walked and that no policy balances any more. Many tip forward meanwhile: so they are low sooner,
+  /// and meet the ground with their knees first. The torso's median peak speed is 1.6, 1.4 and 1.4 m/s of three times
+  /// 20 robots, the largest 2.4; by the balanced way 2.3, 1.3 and 1.3 m/s, and 2.8.
+  WayDown unbalanced{.crouch_s = 0.75, .reference_s = 0.35, .ahead_share = 0.7};
+  double settle_s = 0.05;        ///< in the crouch, before the drives damp
   double height_rate_m_s = 0.5;  ///< of the height channel meanwhile
   /// Of the drives' damping after the crouch over robot.yaml's kd, which is sized for swinging joints: a folded robot
   /// sinks more slowly so. Three times Z1's kd, 48 and 9 Nm s/rad, is the most that the fields of its drives' frames
@@ -81,7 +81,7 @@ class SitDown {
   void step(std::int64_t now_ns, model::JointCommand& command) const noexcept;
 
  private:
-  double crouch_s() const noexcept;  ///< of the way in force, from the fault
+  const WayDown& way() const noexcept { return unbalanced_ ? options_.unbalanced : options_.balanced; }
 
   SitDownOptions options_;
   policy::DriveGains own_;

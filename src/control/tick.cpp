@@ -54,7 +54,7 @@ Tick::Tick(const model::RobotModel& robot, const ClipLibrary& library, std::uniq
       rehearsal_(options.rehearsal),
       action_monitor_(monitor_options(options.action_monitor, *policy_)),
       sit_down_(robot, library, options.sit_down, guard_),
-      fallback_(options.sit_down.reference_s),
+      fallback_(options.sit_down.balanced.reference_s),
       target_(robot.q_stand()),
       rehearsed_(target_) {
   model::JointCommand& command = result_.command;

@@ -23,7 +23,7 @@ constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 struct Pair {
   bench::Column column;
   std::string expected;  ///< in words
-  std::function<std::vector<double>(const bench::Bench&, const bench::BenchRun&)> of;
+  std::function<std::vector<double>(std::size_t run)> of;
   std::vector<WrongUnit> units;
   double may_lag_s;       ///< a reading may be filtered
   double strange_factor;  ///< a factor beyond it is a fault though no unit is known for it
@@ -34,8 +34,7 @@ std::vector<double> derivative_of_readings(const bench::Bench& bench, const benc
 }
 
 /// Central differences; unknown beside a jump.
-std::vector<double> derivative_of_commands(const bench::Bench&, const bench::BenchRun& run) {
-  const bench::Recording& r = run.recording;
+std::vector<double> derivative_of_commands(const bench::Recording& r) {
   std::vector<double> found(r.t_s.size(), kNothing);
   for (std::size_t k = 1; k + 1 < r.t_s.size(); ++k) {
     found[k] = (r.q_cmd_rad[k + 1] - r.q_cmd_rad[k - 1]) / (r.t_s[k + 1] - r.t_s[k - 1]);
@@ -46,17 +45,11 @@ std::vector<double> derivative_of_commands(const bench::Bench&, const bench::Ben
   return found;
 }
 
-/// A column this long ago, between its samples linearly; its first value before them.
-std::vector<double> delayed(const std::vector<double>& t_s, const std::vector<double>& values, double delay_s) {
-  std::vector<double> found = values;
-  std::size_t before = 0;
-  for (std::size_t k = 0; k < values.size() && t_s.size() > 1; ++k) {
-    const double then_s = std::max(t_s[k] - delay_s, t_s.front());
-    while (before + 2 < t_s.size() && t_s[before + 1] <= then_s) ++before;
-    const double share = std::clamp((then_s - t_s[before]) / (t_s[before + 1] - t_s[before]), 0.0, 1.0);
-    found[k] = values[before] + share * (values[before + 1] - values[before]);
-  }
-  return found;
+std::vector<WrongUnit> speed_units(const bench::Bench& bench) {
+  const bool linear = bench.rig == bench::Rig::kLinear;
+  std::vector<WrongUnit> units = position_units(linear);
+  if (!linear) units.push_back({"revolutions per minute", 30.0 / std::numbers::pi});
+  return units;
 }
 
 /// What the drive's law gives for a run's readings, in Nm or V.
@@ -71,7 +64,7 @@ class LawOutput {
     const bench::Recording& r = run_.recording;
     bench::Recording& late = computed_.recording;
     for (auto commands : {&bench::Recording::q_cmd_rad, &bench::Recording::dq_cmd_rad_s, &bench::Recording::tau_ff_Nm})
-      if (!(r.*commands).empty()) late.*commands = delayed(r.t_s, r.*commands, delay_s);
+      if (!(r.*commands).empty()) late.*commands = bench::shifted(r.t_s, r.*commands, -delay_s);
     evidence::compute_drive(bench_, computed_, motion_);
     for (std::size_t k = 0; k < motion_.drive.size(); ++k) {
       const bool on = r.enabled.empty() || r.enabled[k];
@@ -159,7 +152,7 @@ void check(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs, 
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const std::vector<double>& column = bench::values(runs[i].recording, pair.column);
     if (column.empty()) continue;
-    const Alignment by = align(pair.of(bench, runs[i]), column, sample_s, o.longest_shift_s, o.longest_shift_s);
+    const Alignment by = align(pair.of(i), column, sample_s, o.longest_shift_s, o.longest_shift_s);
     if (by.known && std::abs(by.correlation) >= o.sure_correlation) ++informative;
     const Finding one = judged(i, by, pair, sample_s, o);
     if (one.faulty()) findings.push_back(one);
@@ -186,7 +179,7 @@ void check(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs, 
 /// Of these the delay at which the law's output and the column are most alike, whatever lies between them in time: the
 /// median over some of the runs.
 double delay_of_commands_s(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs, bench::Column column,
-                           double model_delay_s, const DataFaultOptions& o) {
+                           std::vector<LawOutput>& laws, double model_delay_s, const DataFaultOptions& o) {
   constexpr std::size_t kRuns = 8;
   constexpr std::array kHeld = {0.0, 0.25, 0.5, 0.75, 1.0, 1.25};  // samples
   const double sample_s = 1.0 / bench.sample_rate_hz;
@@ -194,10 +187,9 @@ double delay_of_commands_s(const bench::Bench& bench, const std::vector<bench::B
   for (std::size_t i = 0; i < runs.size(); i += (runs.size() + kRuns - 1) / kRuns) {
     const std::vector<double>& recorded = bench::values(runs[i].recording, column);
     if (recorded.empty()) continue;
-    LawOutput law(bench, runs[i]);
     for (std::size_t h = 0; h < kHeld.size(); ++h) {
-      const Alignment by = align(law.after(model_delay_s + kHeld[h] * sample_s), recorded, sample_s, o.longest_shift_s,
-                                 o.longest_shift_s);
+      const Alignment by = align(laws[i].after(model_delay_s + kHeld[h] * sample_s), recorded, sample_s,
+                                 o.longest_shift_s, o.longest_shift_s);
       alike[h].push_back(by.known ? std::abs(by.correlation) : 0.0);
     }
   }
@@ -244,37 +236,35 @@ Alignment speed_of_readings(const bench::Bench& bench, const bench::BenchRun& ru
                longest_s);
 }
 
-std::vector<DataFault> derived_column_faults(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
-                                             const DataFaultOptions& o, std::optional<double> model_delay_s) {
-  const bool linear = bench.rig == bench::Rig::kLinear;
-  std::vector<WrongUnit> speeds = position_units(linear);
-  if (!linear) speeds.push_back({"revolutions per minute", 30.0 / std::numbers::pi});
+std::vector<DataFault> speed_command_faults(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
+                                            const DataFaultOptions& o) {
   std::vector<DataFault> found;
-  if (!model_delay_s) {
-    check(bench, runs,
-          {bench::Column::kSpeedCommand, "the derivative of the position command", derivative_of_commands, speeds, 0.0,
-           o.strange_factor},
-          o, found);
-    std::erase_if(found, [](const DataFault& fault) { return !fault.files.empty(); });
-    return found;
-  }
+  const auto derivative = [&](std::size_t run) { return derivative_of_commands(runs[run].recording); };
   check(bench, runs,
-        {bench::Column::kSpeedCommand, "the derivative of the position command", derivative_of_commands, speeds, 0.0,
+        {bench::Column::kSpeedCommand, "the derivative of the position command", derivative, speed_units(bench), 0.0,
          o.strange_factor},
         o, found);
+  return found;
+}
+
+std::vector<DataFault> derived_column_faults(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
+                                             const DataFaultOptions& o, double model_delay_s) {
+  std::vector<DataFault> found = speed_command_faults(bench, runs, o);
+  const auto derivative = [&](std::size_t run) { return derivative_of_readings(bench, runs[run]); };
   check(bench, runs,
-        {bench::Column::kSpeed, "the derivative of the readings", derivative_of_readings, speeds, o.sensor_lag_s,
+        {bench::Column::kSpeed, "the derivative of the readings", derivative, speed_units(bench), o.sensor_lag_s,
          o.strange_factor},
         o, found);
   if (bench.law == bench::DriveLaw::kTorque) return found;
-  const std::vector<WrongUnit> torques = {{"thousandths", 1000.0}};
   const bool torque = bench.law == bench::DriveLaw::kPositionPd;
   const bench::Column column = torque ? bench::Column::kTorque : bench::Column::kDriveVoltage;
-  const double delay_s = delay_of_commands_s(bench, runs, column, *model_delay_s, o);
-  const auto law = [delay_s](const bench::Bench& of, const bench::BenchRun& run) {
-    return LawOutput(of, run).after(delay_s);
-  };
-  check(bench, runs, {column, "the output of the drive's law", law, torques, o.longest_delay_s, o.law_factor}, o,
+  std::vector<LawOutput> laws;
+  laws.reserve(runs.size());
+  for (const bench::BenchRun& run : runs) laws.emplace_back(bench, run);
+  const double delay_s = delay_of_commands_s(bench, runs, column, laws, model_delay_s, o);
+  const auto law = [&](std::size_t run) { return laws[run].after(delay_s); };
+  check(bench, runs,
+        {column, "the output of the drive's law", law, {{"thousandths", 1000.0}}, o.longest_delay_s, o.law_factor}, o,
         found);
   return found;
 }

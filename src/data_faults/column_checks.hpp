@@ -1,7 +1,6 @@
 // Checks of columns against each other that need no model of the joint.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,10 +32,13 @@ Alignment following(const bench::Bench& bench, const bench::BenchRun& run, doubl
 /// How the recorded speed follows the derivative of the readings; unknown without such a column.
 Alignment speed_of_readings(const bench::Bench& bench, const bench::BenchRun& run, double longest_s);
 
-/// Faults of columns that follow from other columns: dq_cmd from q_cmd; dq from q; a recorded torque or voltage from
-/// the drive's law, whose commands act `model_delay_s` late by the readings. Without that delay, before a model is
-/// fitted: dq_cmd alone, and only what all runs show.
+/// Of dq_cmd, which follows from q_cmd.
+std::vector<DataFault> speed_command_faults(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
+                                            const DataFaultOptions& options);
+
+/// Of all columns that follow from other columns: dq_cmd from q_cmd; dq from q; a recorded torque or voltage from the
+/// drive's law, whose commands act `model_delay_s` late by the readings.
 std::vector<DataFault> derived_column_faults(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
-                                             const DataFaultOptions& options, std::optional<double> model_delay_s);
+                                             const DataFaultOptions& options, double model_delay_s);
 
 }  // namespace pmg::data_faults

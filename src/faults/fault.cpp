@@ -148,9 +148,10 @@ bool allows_sit_down(FaultCode code) noexcept { return row(code).sit_down; }
 bool policy_is_sound_after(FaultCode code) noexcept { return row(code).policy_is_sound; }
 
 Reaction reaction(FaultCode code) noexcept {
-  constexpr int kSitDown = 500;  // SitDownOptions: 1 s
-  // A robot that takes steps, and that no policy balances any more, is damped sooner: UnbalancedWay.
-  const int least = row(code).policy_is_sound ? kSitDown : 400;
+  // control::SitDownOptions' two ways: a robot that takes steps, and that no policy balances any more, is damped
+  // sooner.
+  constexpr int kSitDown = 500, kUnbalanced = 400;
+  const int least = row(code).policy_is_sound ? kSitDown : kUnbalanced;
   const CycleRange first = row(code).first;
   if (!row(code).sit_down) return {{}, first};
   return {first, {first.least + least, first.most + kSitDown}};

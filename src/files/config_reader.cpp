@@ -123,7 +123,13 @@ void ConfigReader::fail(const std::string& key, const std::string& wrong, const 
 const YAML::Node& ConfigReader::child(const std::string& key, const std::string& expected) {
   known_.push_back(key);
   const auto found = entries_.find(key);
-  if (found == entries_.end()) fail(key, "is missing", expected);
+  if (found == entries_.end()) {
+    for (const auto& [name, entry] : entries_) {  // what nobody asked for yet may be right: only one slip of the pen
+      if (!entry.asked && key.size() > 3 && edit_distance(key, name) == 1)
+        raise(entry.key_place, path(name), fmt::format("stands there, and {0} is missing; did you mean {0}?", key), "");
+    }
+    fail(key, "is missing", expected);
+  }
   found->second.asked = true;
   return found->second.value;
 }

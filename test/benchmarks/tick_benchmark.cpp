@@ -75,6 +75,8 @@ void BM_tick(benchmark::State& state) {
   control::TickOptions options = control::tick_options(robot);
   options.action_monitor.persist_ticks = 1'000'000;  // feet without ground make the policy reach for it
   options.foot_load.lost_share = -2e9;               // the policy runs anyway
+  options.foot_load.lost_walking_share = -2e9;
+  options.foot_load.least_walking_share = -3e9;
   options.foot_load.found_share = -1e9;
   for (auto _ : state) {
     sim::World world(robot, sil::world_with_noise(1, true));

@@ -216,14 +216,14 @@ TEST(ControlSetup, AnOlderControllersLogIsReplayedWithoutWhatItDidNotName) {
   EXPECT_EQ(options.generator.turn_s, 0.0);
   EXPECT_EQ(options.rehearsal.duration_s, 0.0);
   EXPECT_EQ(options.velocity_trim.gain_per_s, 0.0);
-  EXPECT_EQ(options.sit_down.duration_s, 0.9);
+  EXPECT_EQ(options.sit_down.balanced.crouch_s, 0.9);
   EXPECT_EQ(options.sit_down.brake_factor, 1.0);
   EXPECT_EQ(options.sit_down.unbalanced.reference_s, 0.3) << "one way down, whatever happened to the policy";
   EXPECT_EQ(options.sit_down.unbalanced.crouch_s, 0.9);
-  EXPECT_EQ(options.sit_down.unbalanced.ahead_share, own.ahead_share);
+  EXPECT_EQ(options.sit_down.unbalanced.ahead_share, own.balanced.ahead_share);
   TickOptions older;
   restore_options({{"supervisor", {{"stale_command_s", 0.2}}}}, older);
-  EXPECT_EQ(older.sit_down.duration_s, 0.0);
+  EXPECT_EQ(older.sit_down.balanced.crouch_s, 0.0);
 }
 
 TEST(ControlSetup, WithoutAPolicyNoVariantIsNamed) {

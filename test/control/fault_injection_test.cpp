@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <map>
 #include <ostream>
@@ -11,7 +12,9 @@
 #include <vector>
 
 #include "control/control_rig.hpp"
+#include "control/sit_down.hpp"
 #include "folders.hpp"
+#include "hal/bus_cycle.hpp"
 
 namespace pmg::control {
 namespace {
@@ -218,6 +221,21 @@ TEST(FaultTable, EveryCodeIsInjectedAndDocumentedAndNothingElseIs) {
     EXPECT_NE(std::string(advice(code)), "") << to_string(code);
   }
   EXPECT_TRUE(documented.empty()) << documented.begin()->first << " is documented, but no fault";
+}
+
+TEST(FaultTable, ASitDownTakesAsLongAsItsOptionsSay) {
+  const SitDownOptions sit_down;
+  const auto cycles = [&](const WayDown& way) {
+    return static_cast<int>(std::lround((way.crouch_s + sit_down.settle_s) * 1e9 / hal::BusCycle::kPeriod_ns));
+  };
+  for (std::size_t k = 1; k < faults::kFaultCodes; ++k) {
+    const auto code = static_cast<faults::FaultCode>(k);
+    const faults::Reaction told = faults::reaction(code);
+    if (told.sit_down == faults::CycleRange{}) continue;
+    EXPECT_EQ(told.damping.most - told.sit_down.most, cycles(sit_down.balanced)) << to_string(code);
+    const WayDown& soonest = faults::policy_is_sound_after(code) ? sit_down.balanced : sit_down.unbalanced;
+    EXPECT_EQ(told.damping.least - told.sit_down.least, cycles(soonest)) << to_string(code);
+  }
 }
 
 TEST(FaultTable, WhoIsToPutARobotUprightIsToldWhatLiftsASimulatedOne) {

@@ -156,7 +156,7 @@ TEST(SitDown, NoTorqueJumpsWhenTheJointsAreLowered) {
 
 TEST(SitDown, TheWayOfTheJointsIsEvenAndEndsInTheCrouch) {
   const ClipLibrary library = test::clips(test::biped());
-  SitDown sit_down(test::biped(), library, {.duration_s = 0.9, .settle_s = 0.1, .reference_s = 0.4}, {});
+  SitDown sit_down(test::biped(), library, {.balanced = {0.9, 0.4, 0.35}, .settle_s = 0.1}, {});
   sit_down.start(0);
   const std::int64_t begin_ns = 400'000'000;
   sit_down.lower_joints(library.q_stand, library.q_stand, sit_down.gains().kp_Nm_per_rad, begin_ns);
@@ -395,13 +395,17 @@ TEST(SitDown, AfterItTheDrivesDampMoreAndAfterAStopAsEver) {
 TEST(SitDown, RefusesOptionsThatCannotBe) {
   const ClipLibrary library = test::clips(test::biped());
   const auto make = [&](const SitDownOptions& options) { SitDown(test::biped(), library, options, {}); };
-  EXPECT_THROW(make({.duration_s = 1.0, .settle_s = 0.1}), std::invalid_argument);
-  EXPECT_THROW(make({.duration_s = -0.1}), std::invalid_argument);
-  EXPECT_THROW(make({.duration_s = 0.3, .reference_s = 0.3}), std::invalid_argument);
-  EXPECT_THROW(make({.unbalanced = {.reference_s = 0.8}}), std::invalid_argument);
-  EXPECT_THROW(make({.unbalanced = {.crouch_s = 0.96}}), std::invalid_argument);
-  EXPECT_THROW(make({.unbalanced = {.ahead_share = 1.0}}), std::invalid_argument);
-  EXPECT_THROW(make({.ahead_share = -1.0}), std::invalid_argument);
+  const auto way = [](double crouch_s, double reference_s, double ahead_share) {
+    return WayDown{.crouch_s = crouch_s, .reference_s = reference_s, .ahead_share = ahead_share};
+  };
+  EXPECT_NO_THROW(make({.balanced = way(0.0, 0.4, 0.35)})) << "every fault damps at once";
+  EXPECT_THROW(make({.balanced = way(1.0, 0.4, 0.35), .settle_s = 0.1}), std::invalid_argument);
+  EXPECT_THROW(make({.balanced = way(-0.1, 0.4, 0.35)}), std::invalid_argument);
+  EXPECT_THROW(make({.balanced = way(0.8, 0.8, 0.35)}), std::invalid_argument);
+  EXPECT_THROW(make({.balanced = way(0.95, 0.4, -1.0)}), std::invalid_argument);
+  EXPECT_THROW(make({.unbalanced = way(0.75, 0.8, 0.7)}), std::invalid_argument);
+  EXPECT_THROW(make({.unbalanced = way(0.96, 0.35, 0.7)}), std::invalid_argument);
+  EXPECT_THROW(make({.unbalanced = way(0.75, 0.35, 1.0)}), std::invalid_argument);
   EXPECT_THROW(make({.height_rate_m_s = 0.0}), std::invalid_argument);
   EXPECT_THROW(make({.brake_factor = 0.9}), std::invalid_argument);
 }

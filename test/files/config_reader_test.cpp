@@ -80,6 +80,14 @@ TEST_F(Reader, RefusesMissingKeysWithTheirPath) {
   EXPECT_EQ(refusal([&] { nested.required<double>("c"); }), "a.yaml:2:3: a.c: is missing; expected a number");
 }
 
+TEST_F(Reader, AMissingKeysMistypedNameIsShown) {
+  ConfigReader r = reader("rate: 3\nkp: 1\ndrvie: {kd: 2}\n");
+  EXPECT_EQ(refusal([&] { r.map("drive"); }),
+            "a.yaml:3:1: drvie: stands there, and drive is missing; did you mean drive?");
+  EXPECT_EQ(refusal([&] { r.required<double>("kd"); }), "a.yaml:1:1: kd: is missing; expected a number")
+      << "a short name is near to many";
+}
+
 TEST_F(Reader, RefusesWrongTypes) {
   ConfigReader r = reader("n: \"1\"\nw: 1.5\nb: yes\ns: [1]\nl: 3\nm: 4\ne:\nx: 12abc\n");
   EXPECT_EQ(refusal([&] { r.required<double>("n"); }), "a.yaml:1:4: n: is '1'; expected a finite number");

@@ -5,6 +5,8 @@
 
 #include <fstream>
 
+#include "temporary_folder.hpp"
+
 namespace pmg::files {
 namespace {
 
@@ -66,15 +68,14 @@ TEST(ExpectedName, WhatHasTheWordIsProposedWhereThatIsFew) {
 }
 
 TEST(NearestFile, LooksInTheSameFolderAtTheSameEnding) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "nearest_file";
-  std::filesystem::create_directories(folder);
+  const test::TemporaryFolder own;
+  const std::filesystem::path& folder = own.path();
   std::ofstream(folder / "tour.yaml") << "x";
   std::ofstream(folder / "tuor.txt") << "x";
   EXPECT_EQ(nearest_file(folder / "tuor.yaml"), folder / "tour.yaml");
   EXPECT_EQ(nearest_file(folder / "stand.yaml"), "");
   EXPECT_EQ(nearest_file(folder / "walk.yaml"), "") << "an ending in common is nothing in common";
   EXPECT_EQ(nearest_file(folder / "absent" / "tour.yaml"), "");
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 
 #include "files/config_error.hpp"
 #include "folders.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg::gamepad {
 namespace {
@@ -19,9 +20,10 @@ namespace {
 const std::string kStandard = find_mapping("standard");
 
 TEST(Mapping, EachMistakeIsRefusedWithItsFileAndLine) {
+  const test::TemporaryFolder folder;
   std::stringstream text;
   text << std::ifstream(kStandard).rdbuf();
-  const std::string standard = text.str(), file = testing::TempDir() + "/mistaken_gamepad.yaml";
+  const std::string standard = text.str(), file = folder.file("mistaken_gamepad.yaml");
   for (const auto& [from, to, expected] :
        std::vector<std::array<std::string, 3>>{{"stop: b ", "stop: bb ", ":2:.*no button is named 'bb'"},
                                                {"deadman: leftshoulder", "deadman: b", ":3:.*another meaning"},

@@ -13,6 +13,7 @@
 #include "files.hpp"
 #include "judgement.hpp"
 #include "prepared_plant.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg::literature {
 namespace {
@@ -21,8 +22,8 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 fs::path scratch(const char* name) {
-  const fs::path folder = fs::path(testing::TempDir()) / "literature_plants" / name;
-  fs::remove_all(folder);
+  static const test::TemporaryFolder all;
+  const fs::path folder = all.file(name);
   fs::create_directories(folder);
   return folder;
 }

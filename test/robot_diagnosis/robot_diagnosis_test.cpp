@@ -12,6 +12,7 @@
 #include "robot_diagnosis/hidden_robot.hpp"
 #include "robot_diagnosis/robot_report.hpp"
 #include "sim/robots.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg::robot_diagnosis {
 namespace {
@@ -111,7 +112,8 @@ TEST(RobotDiagnosis, ALogReadsBackAsItWasRecorded) {
   recording.drive.older_by_s = 0.004;
   recording.drive.closed_by_bus = {7};
   recording.drive.bus_loop_age_s = 0.003;
-  const auto file = std::filesystem::path(testing::TempDir()) / "robot_diagnosis_stand.lcm";
+  const test::TemporaryFolder folder;
+  const auto file = folder.file("stand.lcm");
   write_robot_log(recording, z1(), file);
   const std::vector<RobotRecording> read = read_robot_logs({file}, z1());
   ASSERT_EQ(read.size(), 1U);
@@ -128,7 +130,6 @@ TEST(RobotDiagnosis, ALogReadsBackAsItWasRecorded) {
     EXPECT_EQ(read.front().ticks[k].state.q, recording.ticks[k].state.q);
     EXPECT_EQ(read.front().ticks[k].command.kp, recording.ticks[k].command.kp);
   }
-  std::filesystem::remove(file);
 }
 
 TEST(RobotDiagnosis, SaysOfEachLogWhetherASimulationMadeItAndWhatWasSetThere) {
@@ -149,13 +150,13 @@ TEST(RobotDiagnosis, WhatWasSetOnTheSimulatorIsInTheLog) {
   hidden.options.variation.hand_payload_kg[kLeft] = 1.5;
   sim::World world(hidden.robot, hidden.options);
   const std::vector<model::JointCommand> hold(150, excitation::hanging_excitation(z1()).front());
-  const auto file = std::filesystem::path(testing::TempDir()) / "robot_diagnosis_set.lcm";
+  const test::TemporaryFolder folder;
+  const auto file = folder.file("set.lcm");
   write_robot_log(play(world, hold, "stand"), z1(), file);
   const std::string text = source_text(read_robot_logs({file}, z1()).front().source);
   EXPECT_NE(text.find("left_knee: friction.coulomb_Nm = 2.5 Nm, without it 0.6"), std::string::npos) << text;
   EXPECT_NE(text.find("payload of the left hand = 1.5 kg"), std::string::npos) << text;
   EXPECT_EQ(text.find("right_knee"), std::string::npos) << text;
-  std::filesystem::remove(file);
 }
 
 TEST(RobotDiagnosis, AnInterruptedRecordingOrDiagnosisEndsAsInterrupted) {
@@ -170,10 +171,10 @@ TEST(RobotDiagnosis, AnInterruptedRecordingOrDiagnosisEndsAsInterrupted) {
 TEST(RobotDiagnosis, ALogOfAnotherRobotIsRefused) {
   sim::World world(biped(), {});
   const std::vector<model::JointCommand> hold(150, standing_command(biped()));
-  const auto file = std::filesystem::path(testing::TempDir()) / "robot_diagnosis_biped.lcm";
+  const test::TemporaryFolder folder;
+  const auto file = folder.file("biped.lcm");
   write_robot_log(play(world, hold, "stand"), biped(), file);
   EXPECT_THROW(read_robot_logs({file}, z1()), std::runtime_error);
-  std::filesystem::remove(file);
 }
 
 }  // namespace

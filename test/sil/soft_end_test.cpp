@@ -61,7 +61,7 @@ End end_of(std::uint64_t seed, FaultCode code, bool walks, bool sits) {
       seed, "pmg", [&](auto own) { return std::make_unique<FailingPolicy>(std::move(own), failures, clock, false); },
       [&](control::TickOptions& options) {
         options.spoiler = &failing_tick;
-        if (!sits) options.sit_down.duration_s = 0.0;
+        if (!sits) options.sit_down.balanced.crouch_s = 0.0;
       });
   FailingBus drives(it.drives, failures, it.robot, clock, false);
   test::ScriptedOperator driver;
@@ -100,7 +100,9 @@ class SoftEnd : public testing::TestWithParam<FaultCode> {
  protected:
   static void compare(bool walks) {
     std::vector<double> damped, seated, until;
-    const std::uint64_t robots = test::campaign_robots(3), first = test::campaign_first();
+    // Robots that nobody balances end near the promise: fewer than the page's 20 can't tell.
+    const bool unbalanced = walks && !faults::policy_is_sound_after(GetParam());
+    const std::uint64_t robots = test::campaign_robots(unbalanced ? 20 : 3), first = test::campaign_first();
     for (std::uint64_t seed = first; seed < first + robots; ++seed) {
       const End hard = end_of(seed, GetParam(), walks, false), soft = end_of(seed, GetParam(), walks, true);
       EXPECT_EQ(soft.code, GetParam());

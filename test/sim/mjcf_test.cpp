@@ -5,19 +5,18 @@
 
 #include "robots.hpp"
 #include "sim/world.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg {
 namespace {
 
 struct Loaded {
   explicit Loaded(const std::string& xml) {
-    const std::filesystem::path path =
-        std::filesystem::path(testing::TempDir()) /
-        (testing::UnitTest::GetInstance()->current_test_info()->name() + std::string(".xml"));
+    const test::TemporaryFolder folder;
+    const std::filesystem::path path = folder.file("model.xml");
     std::ofstream(path) << xml;
     std::array<char, 500> error{};
     model = mj_loadXML(path.c_str(), nullptr, error.data(), static_cast<int>(error.size()));
-    std::filesystem::remove(path);
     if (model == nullptr) throw std::runtime_error(error.data());
     data = mj_makeData(model);
   }

@@ -12,6 +12,7 @@
 #include "sim/motors_in_force.hpp"
 #include "sim/robots.hpp"
 #include "sim/world.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg::sim {
 namespace {
@@ -34,8 +35,8 @@ class MotorFile : public testing::Test {
   }
   const model::RobotModel& robot_ = z1();
   const std::string joint_ = robot_.joint_index.name(0);
-  const fs::path file_ = fs::path(testing::TempDir()) /
-                         (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "_motor.yaml");
+  const test::TemporaryFolder folder_;
+  const fs::path file_ = folder_.file("motor.yaml");
 };
 
 TEST_F(MotorFile, HoldsEveryParameterExactly) {
@@ -108,15 +109,13 @@ TEST_F(MotorFile, IsTheOneThatIsNamedOrElseTheRobots) {
   write("joints: {" + joint_ + ": {friction: {coulomb_Nm: 0.7}}}\n");
   EXPECT_TRUE(motors_in_force(robot_, "none").empty());
   EXPECT_EQ(motors_in_force(robot_, file_).at(joint_).friction.coulomb_Nm, 0.7);
-  const fs::path copy = fs::path(testing::TempDir()) / "robot that names its motors";
-  fs::remove_all(copy);
+  const fs::path copy = folder_.file("robot that names its motors");
   fs::copy(robot_.directory, copy, fs::copy_options::recursive);
   std::ofstream(copy / "robot.yaml", std::ios::app) << "\nmotor: motor.yaml\n";
   fs::copy_file(file_, copy / "motor.yaml");
   const model::RobotModel named = model::load_robot(copy);
   EXPECT_EQ(motors_in_force(named, "").at(joint_).friction.coulomb_Nm, 0.7);
   EXPECT_TRUE(motors_in_force(named, "none").empty());
-  fs::remove_all(copy);
 }
 
 TEST_F(MotorFile, LeavesToTheRobotWhatItDoesntSay) {

@@ -11,6 +11,7 @@
 #include "robots.hpp"
 #include "sim/video_writer.hpp"
 #include "sim/world.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg {
 namespace {
@@ -77,8 +78,8 @@ TEST(Renderer, TurnsSoftlyToWhereItIsToLookFrom) {
 }
 
 TEST(VideoWriter, WritesAnMp4) {
-  const auto path = std::filesystem::path(testing::TempDir()) / "pmg video 'quoted'.mp4";
-  std::filesystem::remove(path);
+  const test::TemporaryFolder folder;
+  const auto path = folder.file("pmg video 'quoted'.mp4");
   {
     sim::VideoWriter video(path, 64, 48);
     Rgb frame(64 * 48 * 3);
@@ -105,11 +106,12 @@ TEST(VideoWriter, LooksForFfmpegWithoutAWordOnStandardOutput) {
 }
 
 TEST(VideoWriter, SaysSoWhenFfmpegIsMissing) {
+  const test::TemporaryFolder folder;
   const std::string path = std::getenv("PATH");
-  setenv("PATH", testing::TempDir().c_str(), 1);
+  setenv("PATH", folder.path().c_str(), 1);
   std::string message;
   try {
-    sim::VideoWriter video(std::filesystem::path(testing::TempDir()) / "none.mp4", 64, 48);
+    sim::VideoWriter video(folder.file("none.mp4"), 64, 48);
   } catch (const std::runtime_error& error) {
     message = error.what();
   }
@@ -118,7 +120,8 @@ TEST(VideoWriter, SaysSoWhenFfmpegIsMissing) {
 }
 
 TEST(VideoWriter, SaysSoWhenTheFileCantBeWritten) {
-  const auto path = std::filesystem::path(testing::TempDir()) / "no such folder" / "x.mp4";
+  const test::TemporaryFolder folder;
+  const auto path = folder.path() / "no such folder" / "x.mp4";
   const auto write_and_close = [&path] {
     sim::VideoWriter video(path, 64, 48);
     const Rgb frame(64 * 48 * 3);
@@ -129,7 +132,8 @@ TEST(VideoWriter, SaysSoWhenTheFileCantBeWritten) {
 }
 
 TEST(VideoWriter, RefusesAFrameOfAnotherSize) {
-  sim::VideoWriter video(std::filesystem::path(testing::TempDir()) / "size.mp4", 64, 48);
+  const test::TemporaryFolder folder;
+  sim::VideoWriter video(folder.file("size.mp4"), 64, 48);
   EXPECT_THROW(video.write(Rgb(100)), std::runtime_error);
 }
 

@@ -12,6 +12,7 @@
 #include "generator_core/allocation_count.hpp"
 #include "sim/actuator_model.hpp"
 #include "sim/motor_file.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg::sim {
 namespace {
@@ -181,8 +182,8 @@ class ResidualTorqueFile : public testing::Test {
     }
     return "accepted";
   }
-  const fs::path file_ = fs::path(testing::TempDir()) /
-                         (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "_motor.yaml");
+  const test::TemporaryFolder folder_;
+  const fs::path file_ = folder_.file("motor.yaml");
 };
 
 TEST_F(ResidualTorqueFile, HoldsEveryNumberExactly) {

@@ -15,6 +15,7 @@
 #include "folders.hpp"
 #include "sim/actuator_model.hpp"
 #include "sim/motor_file.hpp"
+#include "temporary_folder.hpp"
 
 namespace pmg::test {
 namespace {
@@ -211,11 +212,10 @@ ordered_json inputs() {
 
 model::ResidualTorque residual_torque(const std::string& text) {
   if (text.empty()) return {};
-  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "residual_torque_of_a_record.yaml";
+  const test::TemporaryFolder folder;
+  const std::filesystem::path file = folder.file("motor.yaml");
   std::ofstream(file) << R"({"joints": {"one": {"residual_torque": )" << text << "}}}";
-  const model::ResidualTorque read = sim::read_motor_file(file).at("one").residual_torque;
-  std::filesystem::remove(file);
-  return read;
+  return sim::read_motor_file(file).at("one").residual_torque;
 }
 
 ordered_json outputs(const Values& values, const std::string& residual = "") {
