@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -52,6 +53,12 @@ std::optional<double> plain_number(const YAML::Node& node) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
+}
+
+/// A letter too few or too many, or two that changed places. Another letter may be another key: kp_factor, kd_factor.
+bool is_slip(const std::string& key, const std::string& typed) {
+  return key.size() > 3 && edit_distance(key, typed) == 1 &&
+         (key.size() != typed.size() || std::ranges::is_permutation(key, typed));
 }
 
 }  // namespace
@@ -124,9 +131,9 @@ const YAML::Node& ConfigReader::child(const std::string& key, const std::string&
   known_.push_back(key);
   const auto found = entries_.find(key);
   if (found == entries_.end()) {
-    for (const auto& [name, entry] : entries_) {  // what nobody asked for yet may be right: only one slip of the pen
-      if (!entry.asked && key.size() > 3 && edit_distance(key, name) == 1)
-        raise(entry.key_place, path(name), fmt::format("stands there, and {0} is missing; did you mean {0}?", key), "");
+    for (const auto& [name, entry] : entries_) {
+      if (!entry.asked && is_slip(key, name))
+        raise(entry.key_place, path(key), fmt::format("is missing, and '{}' stands here", name), expected);
     }
     fail(key, "is missing", expected);
   }
