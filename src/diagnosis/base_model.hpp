@@ -10,8 +10,10 @@ namespace pmg::diagnosis {
 
 using effects::BaseModel;
 
-/// given: parameters of motor.yaml. Without them the paper's eta and bench.yaml's unknowns are fitted from scratch.
+/// given: parameters of motor.yaml. noise_squares: mean square of the noise [rad^2]. Without a given model the paper's
+/// eta and bench.yaml's unknowns are fitted from scratch.
 BaseModel base_model(const bench::Bench& bench, const std::optional<model::ActuatorParameters>& given,
-                     const effects::NestedFit& fit, const JointDiagnosisOptions& options, unsigned threads);
+                     const effects::NestedFit& fit, const JointDiagnosisOptions& options, double noise_squares,
+                     unsigned threads);
 
 }  // namespace pmg::diagnosis

@@ -50,8 +50,8 @@ class JointDiagnosisRun {
         direct_evidence(checks_, base.model.actuator, diagnosis_.noise_floor.rms_rad, base.scale.speed_rad_s, by_), by_,
         {.report = [this](double, std::string_view doing) { report(share_ + 0.02 * (0.9 - share_), doing); },
          .interrupted = progress_.interrupted});
-    for (const calib::Unknown& u : search.base_model().unknowns) diagnosis_.base_parameters.push_back(u.name);
     auto [chosen, final_fit] = final_model(search, all);
+    for (const calib::Unknown& u : search.base_model().unknowns) diagnosis_.base_parameters.push_back(u.name);
     const bool differ_at_end = tell_assemblies(fitted, scored, final_fit, base, true);
     const effects::NestedFit of_assemblies(fitted, options_.threads);
     if (differ_at_end)
@@ -111,7 +111,8 @@ class JointDiagnosisRun {
   /// remains of the error to the noise floor.
   BaseModel base_at_chosen_step(std::vector<calib::SingleJoint>& fitted, std::vector<calib::SingleJoint>& scored) {
     const effects::NestedFit first = searched(fitted);
-    BaseModel base = base_model(bench_, options_.model, first, by_, options_.threads);
+    BaseModel base =
+        base_model(bench_, options_.model, first, by_, std::pow(diagnosis_.noise_floor.rms_rad, 2), options_.threads);
     noise_ = diagnosis_.noise_floor;
     calib::ChosenStep& step = diagnosis_.step;
     if (options_.step_s > 0.0) {

@@ -186,6 +186,59 @@ bool EffectSearch::was_left_out(const std::string& effect) const {
   return std::any_of(left_out_.begin(), left_out_.end(), [&](const auto& one) { return one.first == effect; });
 }
 
+/// (effects, where to begin) => (their fit with this constant of the model free, too).
+Extension EffectSearch::with_constant(const calib::Unknown& constant, const std::vector<std::string>& effects,
+                                      const effects::Forms& forms, const calib::JointModel& start) {
+  base_.unknowns.push_back(constant);
+  Extension found = extend(effects, forms, start);
+  base_.unknowns.pop_back();
+  return found;
+}
+
+/// The constant is free from now on, and begins where this fit has it.
+void EffectSearch::free_constant(const calib::Unknown& constant, const Extension& with) {
+  base_.unknowns.push_back(constant);
+  std::erase(base_.constants, constant);
+  calib::set(base_.model, constant.name, calib::value(with.fitted.model, constant.name));
+  without_.clear();  // fits and screens with the constant as it was
+  alternatives_.clear();
+  latest_look_.reset();
+}
+
+/// Why an effect vanishes where a constant of the model is fitted in its place, or "". The constant is free from then
+/// on.
+std::string EffectSearch::made_of_constant(const Extension& chosen, const Extension& without,
+                                           const std::string& effect) {
+  std::vector<std::string> kept = chosen.effects;
+  std::erase(kept, effect);
+  for (const calib::Unknown& constant : calib::Unknowns(base_.constants)) {
+    const Extension other =
+        with_constant(constant, kept, chosen.forms, fits_.without(chosen.fitted.model, effect, kept, chosen.forms));
+    if (compared(without, other).deviations < options_.least_deviations ||
+        compared(other, chosen).deviations >= options_.least_deviations)
+      continue;
+    const double before = calib::value(base_.model, constant.name);
+    free_constant(constant, other);
+    return fmt::format("with {} at {:.3g} {} in place of {:.3g} runs left out are predicted as well without it",
+                       constant.name, calib::value(base_.model, constant.name), constant.unit(), before);
+  }
+  return "";
+}
+
+/// (chosen extension) => (the same with a constant of the model free that the runs ask for by the rules for an effect).
+std::optional<Extension> EffectSearch::with_a_constant_asked_for(const Extension& chosen) {
+  if (!leaves_rest(chosen)) return std::nullopt;
+  for (const calib::Unknown& constant : calib::Unknowns(base_.constants)) {
+    Extension other = with_constant(constant, chosen.effects, chosen.forms, chosen.fitted.model);
+    const Trial gain = trial(chosen, other, constant.name);
+    if (gain.comparison.deviations < options_.least_deviations || gain.share_of_rest < options_.scratch_gain_of_rest)
+      continue;
+    free_constant(constant, other);
+    return other;
+  }
+  return std::nullopt;
+}
+
 Settled EffectSearch::settled(Extension chosen) {
   for (;;) {
     Extension with_priors = refit_with_priors(chosen);
@@ -194,17 +247,24 @@ Settled EffectSearch::settled(Extension chosen) {
     double least = std::numeric_limits<double>::infinity();
     for (const std::string& name : chosen.effects) {
       if (measured(name) != nullptr || stopped_) continue;
-      const Trial last = trial(refit_without(chosen, name), chosen, name);
+      const Extension without = refit_without(chosen, name);
+      const Trial last = trial(without, chosen, name);
       std::string against =
           last.comparison.log_gain > 0.0 ? doubt(last) : "runs left out are predicted no better with it";
       if (against.empty()) against = unsure(name, with_priors.forms, with_priors.fitted);
+      if (against.empty()) against = made_of_constant(chosen, without, name);
       if (against.empty() || last.comparison.log_gain >= least) continue;
       least = last.comparison.log_gain;
       weakest = name;
       why = against;
     }
-    if (weakest.empty()) return {std::move(chosen), std::move(with_priors)};
-    chosen = leave_out(chosen, weakest, why);
+    if (!weakest.empty()) {
+      chosen = leave_out(chosen, weakest, why);
+      continue;
+    }
+    std::optional<Extension> with = with_a_constant_asked_for(chosen);
+    if (!with) return {std::move(chosen), std::move(with_priors)};
+    chosen = *std::move(with);
   }
 }
 

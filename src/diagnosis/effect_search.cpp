@@ -115,7 +115,7 @@ Extension EffectSearch::refit_with_priors(const Extension& extension) const {
   calib::Unknowns effects_only;
   for (const calib::Unknown& u : loose.unknowns) {
     if (u.deviation > 0.0)
-      calib::set(given, u.name, u.expected);
+      calib::set(given, u.name, u.value(u.expected));
     else
       effects_only.push_back(u);
   }

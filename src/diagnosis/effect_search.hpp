@@ -123,6 +123,11 @@ class EffectSearch {
   Extension with_measured() const;
   Extension completed(Extension current);
   bool was_left_out(const std::string& effect) const;
+  Extension with_constant(const calib::Unknown& constant, const std::vector<std::string>& effects,
+                          const effects::Forms& forms, const calib::JointModel& start);
+  void free_constant(const calib::Unknown& constant, const Extension& with);
+  std::optional<Extension> with_a_constant_asked_for(const Extension& chosen);
+  std::string made_of_constant(const Extension& chosen, const Extension& without, const std::string& effect);
   Extension extend(const std::vector<std::string>& effects, const effects::Forms& forms,
                    const calib::JointModel& start) const;
   Trial trial(const Extension& without, const Extension& with, const std::string& effect) const;

@@ -100,6 +100,15 @@ struct JointDiagnosisOptions {
   work::Threshold load_tolerance{0.02, "", "the same of loads", kAssumed};
   work::Threshold deviation_of_tolerance{
       0.5, "", "one standard deviation of such a number, as a share of its tolerance", kAssumed};
+  work::Threshold constant_gain_of_rest{
+      0.5, "", "a constant of the model is free from the start if it explains this share of what is left", kAssumed};
+  work::Threshold stiffer_presliding{10.0, "",
+                                     "dry friction may give way by so many times less than the model or the default "
+                                     "say before it slides: a joint that "
+                                     "sticks ideally gives way by too little to be seen",
+                                     kAssumed};
+  work::Threshold softer_presliding{3.0, "", "or by so many times more; this ratio is one standard deviation",
+                                    kAssumed};
   effects::IntervalOptions intervals;
   // The next excitation.
   work::Threshold enough_deviations{
@@ -138,9 +147,10 @@ struct JointDiagnosisOptions {
                  apart_deviations, apart_share, fewest_apart_blocks, visible_share, better_form_deviations,
                  hopeless_form_deviations, remains_of_noise, remains_of_beginning, coarser_quantum, quantum_of_noise,
                  gain_tolerance, damping_tolerance, friction_tolerance, load_tolerance, deviation_of_tolerance,
-                 intervals, enough_deviations, most_asked_runs, most_asked_recordings, searched_runs, fitted_effects,
-                 exchanged_effects, fitted_pairs, finished_effects, worth_finishing, worth_fitting_form, few_iterations,
-                 many_iterations, settled_squares, assembly, odd_runs, step, signatures, extension)
+                 constant_gain_of_rest, stiffer_presliding, softer_presliding, intervals, enough_deviations,
+                 most_asked_runs, most_asked_recordings, searched_runs, fitted_effects, exchanged_effects, fitted_pairs,
+                 finished_effects, worth_finishing, worth_fitting_form, few_iterations, many_iterations,
+                 settled_squares, assembly, odd_runs, step, signatures, extension)
 };
 
 /// Every row of both by its name for --set: a joint's as they are, the data's as "data_faults.NAME".

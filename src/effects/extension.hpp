@@ -18,6 +18,9 @@ struct BaseModel {
   calib::JointModel model;
   calib::Unknowns unknowns;
   BenchScale scale;
+  /// Numbers that the model has by default, no data sheet gives, and the runs may see: not free, but tried in the place
+  /// of an effect before it is believed.
+  calib::Unknowns constants{};
 };
 
 /// By effect the index of its form in Effect::forms. An effect that isn't listed has its first form.
