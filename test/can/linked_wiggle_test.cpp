@@ -108,7 +108,6 @@ TEST(LinkedVerdict, OfAWaistWithoutAnImuNothingFalseIsSaid) {
   }
 }
 
-// A foot weighs less than its joints' friction: the eye gets what each arrangement would look like.
 // A base that still moves, or a payload, puts a load off by more than one friction: by up to 1.4 where nothing touched
 // the limb. What fits it better by chance is then not taken for the truth.
 TEST(LinkedVerdict, ALoadThatIsOffByLessThanTwoFrictionsRulesNothingOut) {
@@ -136,6 +135,7 @@ TEST(LinkedVerdict, ALoadThatIsOffByLessThanTwoFrictionsRulesNothingOut) {
   }
 }
 
+// A foot weighs less than its joints' friction: the eye gets what each arrangement would look like.
 TEST(LinkedVerdict, OfAnAnkleTheEyeIsToldWhatSwappedAndInvertedMotorsWouldLookLike) {
   const can::DriveSetup setup = test::z1_with("left_ankle_pitch", "left_ankle_roll", -0.25);
   const can::BusSetup& bus = bus_of(setup);
