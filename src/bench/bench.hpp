@@ -56,6 +56,7 @@ struct Bench {
   std::vector<std::string> unknown;
   double kp_of_law = 1.0, kd_of_law = 0.0;  ///< gains of a cascade, if runs.csv has no columns of gains
   double supply_V = 1.0;                    ///< supply voltage if no bus voltage is recorded
+  std::optional<double> nominal_supply_V;   ///< as bench.yaml has it
   std::vector<BenchLoad> loads;
   CsvTable runs;
   std::vector<Correction> corrections;  ///< of what the files say; none of them until somebody asks for it

@@ -21,19 +21,6 @@ double rms_rad(const RunPair& pair) { return std::sqrt(pair.mean_square_rad2); }
 
 std::string thousandths(double value) { return fmt::format("{:.3g}e-3", 1e3 * value); }
 
-/// Robust scale of the repeats of a condition, 50 % breakdown: of n repeats the h (h - 1) / 2-th
-/// smallest difference with h = n / 2 + 1, the rank of P. J. Rousseeuw and C. Croux, JASA 88:1273, 1993. 0 without
-/// repeats; copies don't count.
-double usual_difference_rad(const Condition& condition) {
-  std::vector<double> differences;
-  for (const RunPair& pair : condition.pairs) {
-    if (!pair.identical) differences.push_back(rms_rad(pair));
-  }
-  if (differences.empty()) return 0.0;
-  const std::size_t half = condition.runs.size() / 2 + 1;
-  return fitting::value_at_rank(differences, std::min(half * (half - 1) / 2, differences.size()) - 1);
-}
-
 /// (condition, longest link) => (groups of linked runs, the largest first).
 std::vector<Indices> groups(const Condition& condition, double link_rad) {
   std::vector<Indices> found;

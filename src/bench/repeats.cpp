@@ -5,6 +5,8 @@
 #include <map>
 #include <tuple>
 
+#include "fitting/statistics.hpp"
+
 namespace pmg::bench {
 
 namespace {
@@ -87,6 +89,16 @@ RunPair compared(const std::vector<const BenchRun*>& runs, std::size_t first, st
   const auto [less, more] = std::minmax({here.fast_squares(), there.fast_squares()});  // values, not references
   pair.fast_ratio = more > 0.0 ? std::sqrt(less / more) : 1.0;
   return pair;
+}
+
+double usual_difference_rad(const Condition& condition) {
+  std::vector<double> differences;
+  for (const RunPair& pair : condition.pairs) {
+    if (!pair.identical) differences.push_back(std::sqrt(pair.mean_square_rad2));
+  }
+  if (differences.empty()) return 0.0;
+  const std::size_t half = condition.runs.size() / 2 + 1;
+  return fitting::value_at_rank(differences, std::min(half * (half - 1) / 2, differences.size()) - 1);
 }
 
 std::vector<Condition> conditions(const std::vector<const BenchRun*>& runs) {

@@ -30,6 +30,11 @@ std::vector<Condition> conditions(const std::vector<const BenchRun*>& runs);
 /// (runs, two of them) => (their pair).
 RunPair compared(const std::vector<const BenchRun*>& runs, std::size_t first, std::size_t second);
 
+/// Robust scale of the differences between a condition's repeats, 50 % breakdown: of n repeats the h (h - 1) / 2-th
+/// smallest difference with h = n / 2 + 1, the rank of P. J. Rousseeuw and C. Croux, JASA 88:1273, 1993. 0 without
+/// repeats; copies don't count.
+double usual_difference_rad(const Condition& condition);
+
 /// True if two commands agree in more than two thirds of their common samples. A jump may come one sample earlier or
 /// later: clocks of hosts drift.
 bool same_command(const Recording& a, const Recording& b);

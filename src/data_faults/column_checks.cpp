@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "evidence/motion.hpp"
 #include "fitting/statistics.hpp"
@@ -219,6 +220,43 @@ std::string place_of(const std::string& column, const std::vector<std::string>& 
                                        files.begin() + static_cast<std::ptrdiff_t>(std::min(kNamed, files.size())));
   const std::string more = files.size() > kNamed ? fmt::format(" and {} more", files.size() - kNamed) : "";
   return fmt::format("column {} of {}{}", column, fmt::join(first, ", "), more);
+}
+
+std::vector<DataFault> supply_faults(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
+                                     const DataFaultOptions& options) {
+  std::vector<double> supplies_V;
+  std::vector<std::size_t> recorded;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (runs[i].recording.bus_V.empty()) continue;
+    recorded.push_back(i);
+    supplies_V.push_back(fitting::median(runs[i].recording.bus_V));
+  }
+  if (recorded.empty()) return {};
+  const double usual_V = fitting::median(supplies_V), nominal_V = bench.nominal_supply_V.value_or(usual_V);
+  const std::string column = bench::column_name(bench::Column::kBus, false);
+  std::vector<DataFault> found;
+  for (const auto& [name, per_unit] :
+       {std::pair{"tenths of a volt", 10.0}, {"hundredths of a volt", 100.0}, {"mV", 1000.0}}) {
+    std::vector<std::string> files;
+    std::vector<double> values_V;
+    for (std::size_t i = 0; i < recorded.size(); ++i) {
+      if (!(std::abs(std::log(supplies_V[i] / per_unit / nominal_V)) < options.supply_tolerance)) continue;
+      files.push_back(runs[recorded[i]].file);
+      values_V.push_back(supplies_V[i]);
+    }
+    if (files.empty()) continue;
+    if (static_cast<double>(files.size()) >= options.same_kind_share * static_cast<double>(recorded.size()))
+      files.clear();
+    found.push_back(
+        {.kind = Kind::kUnit,
+         .where = place_of(column, files),
+         .correction = fmt::format("{} is in {}: multiply it by {:g}", column, name, 1.0 / per_unit),
+         .evidence = {fmt::format("its median is {:.4g} V; {} {:.4g} V", fitting::median(values_V),
+                                  bench.nominal_supply_V ? "bench.yaml says" : "that of all runs is", nominal_V)},
+         .fixes = {{.files = files, .columns = {bench::Column::kBus}, .factor = 1.0 / per_unit}},
+         .files = files});
+  }
+  return found;
 }
 
 Alignment following(const bench::Bench& bench, const bench::BenchRun& run, double longest_s) {

@@ -26,6 +26,11 @@ WrongUnit unit_of_factor(double factor, const std::vector<WrongUnit>& units, dou
 /// "column q_rad of all runs", "column q_rad of run03.csv".
 std::string place_of(const std::string& column, const std::vector<std::string>& files);
 
+/// The recorded bus voltage in another unit, as some servos send it: beside bench.yaml's nominal one, else beside the
+/// other runs.
+std::vector<DataFault> supply_faults(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
+                                     const DataFaultOptions& options);
+
 /// How a run's readings follow its commands, while the drive is on. The lag is at most longest_s.
 Alignment following(const bench::Bench& bench, const bench::BenchRun& run, double longest_s);
 

@@ -7,6 +7,7 @@
 #include "data_faults/column_checks.hpp"
 #include "data_faults/commanded_torque_check.hpp"
 #include "data_faults/position_checks.hpp"
+#include "data_faults/repeat_checks.hpp"
 #include "data_faults/run_checks.hpp"
 #include "data_faults/shared_checks.hpp"
 #include "data_faults/shift_checks.hpp"
@@ -77,11 +78,13 @@ std::vector<DataFault> find_data_faults(const bench::Bench& bench, const std::ve
   std::vector<DataFault> found;
   Examined examined(bench, runs, model, options, threads);
   take(position_faults(examined), examined, found);
+  take(supply_faults(bench, examined.runs(), options), examined, found);
   // Before a model is fitted, only what all runs show.
   std::vector<DataFault> of_all_runs = speed_command_faults(bench, examined.runs(), options);
   std::erase_if(of_all_runs, [](const DataFault& fault) { return !fault.files.empty(); });
   take(of_all_runs, examined, found);
   take(trajectory_faults(examined.runs(), options), examined, found);
+  take(repeat_faults(examined), examined, found);
   take_what_the_model_tells(examined, found);
   const double delay_s = examined.fitted().model.actuator.command.delay_s;
   take(derived_column_faults(bench, examined.runs(), options, delay_s), examined, found);

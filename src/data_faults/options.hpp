@@ -23,6 +23,10 @@ struct DataFaultOptions {
       0.6, "", "readings follow their commands if they correlate so well at the best lag", kAssumed};
   work::Threshold same_kind_share{0.8, "", "a fault is one of all runs if this share of them shows it", kAssumed};
   work::Threshold unit_tolerance{0.12, "", "logarithm by which a factor may miss a unit's or a firmware's", kAssumed};
+  work::Threshold supply_tolerance{0.4, "",
+                                   "logarithm by which a bus voltage may miss a unit's factor of the nominal one: "
+                                   "batteries empty, sources sag",
+                                   kAssumed};
   work::Threshold strange_factor{
       1.8, "", "a factor between two columns beyond it is another unit, though nobody knows which", kAssumed};
   work::Threshold slope_tolerance{2.5, "",
@@ -93,13 +97,13 @@ struct DataFaultOptions {
   work::CountThreshold fitted_runs{24, "", "runs that the quick model is fitted to", "time of a diagnosis"};
   work::CountThreshold most_faults{6, "", "faults that the model is asked for, one after the other", kAssumed};
 
-  PMG_THRESHOLDS(sure_correlation, follows_correlation, same_kind_share, unit_tolerance, strange_factor,
-                 slope_tolerance, sensor_lag_s, shift_samples, least_shift_s, shift_rest, longest_shift_s, law_factor,
-                 command_difference, clear_gain, overwhelming_gain, usual_error, usual_deviations, largest_usual_error,
-                 column_gain, model_shift_samples, shift_gain, lone_shift_gain, longest_delay_s, row_gain, pair_gain,
-                 least_mass_factor, mass_gain, least_gain_factor, gain_gain, damping_gain, least_common_gain,
-                 better_than_common, factor_deviations, least_exact_factor, exact_floors, exact_evidence,
-                 feed_forward_gain, fitted_runs, most_faults)
+  PMG_THRESHOLDS(sure_correlation, follows_correlation, same_kind_share, unit_tolerance, supply_tolerance,
+                 strange_factor, slope_tolerance, sensor_lag_s, shift_samples, least_shift_s, shift_rest,
+                 longest_shift_s, law_factor, command_difference, clear_gain, overwhelming_gain, usual_error,
+                 usual_deviations, largest_usual_error, column_gain, model_shift_samples, shift_gain, lone_shift_gain,
+                 longest_delay_s, row_gain, pair_gain, least_mass_factor, mass_gain, least_gain_factor, gain_gain,
+                 damping_gain, least_common_gain, better_than_common, factor_deviations, least_exact_factor,
+                 exact_floors, exact_evidence, feed_forward_gain, fitted_runs, most_faults)
 };
 
 }  // namespace pmg::data_faults

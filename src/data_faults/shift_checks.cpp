@@ -56,30 +56,25 @@ double least_shift_s(const Examined& e) {
   return std::max<double>(e.options().model_shift_samples * e.sample_s(), e.options().least_shift_s);
 }
 
-/// A shift that a sibling shows, too, is physics: fast motion lags, and a weak drive lags more.
+/// A shift that a sibling shows, too, is physics: fast motion lags, and a weak drive lags more. Of three repeats and
+/// more the repeats themselves have told (repeat_faults()), more finely than a model.
 void try_shift(const Examined& e, std::size_t run, const std::vector<Shift>& shifts, std::vector<Explained>& into) {
+  const std::vector<std::size_t> alike = siblings(e, run);
+  const bool repeated = same_condition(e.runs()[alike.front()], e.runs()[run]);
+  if (repeated && alike.size() > 1 && e.runs()[alike.front()].trajectory == e.runs()[run].trajectory) return;
   double usual_s = 0.0, nearest_s = std::numeric_limits<double>::infinity();
-  for (const std::size_t sibling : siblings(e, run)) {
+  for (const std::size_t sibling : alike) {
     const double apart_s = std::abs(shifts[run].lag_s - shifts[sibling].lag_s);
     if (apart_s < nearest_s) nearest_s = apart_s, usual_s = shifts[sibling].lag_s;
   }
   const double lag_s = shifts[run].lag_s - usual_s, before = e.log_error()[run];
   if (std::abs(lag_s) < least_shift_s(e)) return;
-  const std::string file = e.runs()[run].file;
-  const bench::Correction fix{.files = {file}, .columns = {Column::kPosition}, .shift_s = lag_s};
-  const double after = log_error_with(e, run, fix);
-  const std::string column = bench::column_name(Column::kPosition, e.linear());
-  DataFault fault{.kind = Kind::kTimeShift, .where = {}, .correction = {}};
-  fault.where = place_of(column, {file}) + " against " + command_name(e);
-  fault.correction = fmt::format("{} of {} is {:.3g} s {}: move it by {:.3g} s", column, file, std::abs(lag_s),
-                                 lag_s > 0.0 ? "late" : "early", -lag_s);
+  DataFault fault = shifted_readings(e, run, lag_s, {});
+  const double after = log_error_with(e, run, fault.fixes.front());
   fault.evidence = {fmt::format("the readings of the most similar run lie {:.3g} s from the model's, these {:.3g} s",
                                 usual_s, shifts[run].lag_s),
                     gain_text(e, before, after)};
-  fault.fixes = {fix};
-  fault.files = {file};
   // Wrong gains or a wrong load make a run late or early, too: then another row explains it better than a shift.
-  const bool repeated = same_condition(e.runs()[siblings(e, run).front()], e.runs()[run]);
   const double least = repeated ? e.options().shift_gain : e.options().lone_shift_gain;
   const bool sure =
       before - after > std::log(least) && mends(e, before, after) && after < lowest_log_error_of_rows(e, run);
@@ -127,6 +122,17 @@ double early_s(const Examined& e, double lag_s, bool plain) {
 }
 
 }  // namespace
+
+DataFault shifted_readings(const Examined& e, std::size_t run, double lag_s, std::vector<std::string> evidence) {
+  const std::string file = e.runs()[run].file, column = bench::column_name(Column::kPosition, e.linear());
+  return {.kind = Kind::kTimeShift,
+          .where = place_of(column, {file}) + " against " + command_name(e),
+          .correction = fmt::format("{} of {} is {:.3g} s {}: move it by {:.3g} s", column, file, std::abs(lag_s),
+                                    lag_s > 0.0 ? "late" : "early", -lag_s),
+          .evidence = std::move(evidence),
+          .fixes = {{.files = {file}, .columns = {Column::kPosition}, .shift_s = lag_s}},
+          .files = {file}};
+}
 
 void try_shifts(const Examined& e, std::vector<Explained>& into) {
   std::vector<Shift> shifts;

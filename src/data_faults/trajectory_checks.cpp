@@ -56,6 +56,15 @@ bool same_commands(const bench::BenchRun& a, const bench::BenchRun& b, double fa
   return size > 0.0 && apart <= std::pow(options.command_difference, 2) * size;
 }
 
+DataFault swapped_runs(const bench::BenchRun& one, const bench::BenchRun& other, std::vector<std::string> evidence) {
+  return {.kind = Kind::kSwappedRuns,
+          .where = fmt::format("runs.csv, rows {} and {}", one.file, other.file),
+          .correction = fmt::format("exchange the files {} and {} in runs.csv", one.file, other.file),
+          .evidence = std::move(evidence),
+          .fixes = {row_of(one, conditions_of(other)), row_of(other, conditions_of(one))},
+          .files = {one.file, other.file}};
+}
+
 std::vector<DataFault> trajectory_faults(const Runs& runs, const DataFaultOptions& options) {
   std::map<std::string, std::vector<std::size_t>> groups;
   for (std::size_t i = 0; i < runs.size(); ++i) groups[runs[i].trajectory].push_back(i);
@@ -91,13 +100,9 @@ std::vector<DataFault> trajectory_faults(const Runs& runs, const DataFaultOption
     if (partner != strangers.end()) {
       done[partner->run] = true;
       const bench::BenchRun& other = runs[partner->run];
-      found.push_back({.kind = Kind::kSwappedRuns,
-                       .where = fmt::format("runs.csv, rows {} and {}", run.file, other.file),
-                       .correction = fmt::format("exchange the files {} and {} in runs.csv", run.file, other.file),
-                       .evidence = {fmt::format("{} has the commands of the trajectory {}, {} those of {}", run.file,
-                                                one.looks_like, other.file, run.trajectory)},
-                       .fixes = {row_of(run, conditions_of(other)), row_of(other, conditions_of(run))},
-                       .files = {run.file, other.file}});
+      found.push_back(swapped_runs(run, other,
+                                   {fmt::format("{} has the commands of the trajectory {}, {} those of {}", run.file,
+                                                one.looks_like, other.file, run.trajectory)}));
       continue;
     }
     bench::RowConditions named = conditions_of(run);

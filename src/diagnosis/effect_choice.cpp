@@ -209,11 +209,10 @@ void EffectSearch::free_constant(const calib::Unknown& constant, const Extension
 /// on.
 std::string EffectSearch::made_of_constant(const Extension& chosen, const Extension& without,
                                            const std::string& effect) {
-  std::vector<std::string> kept = chosen.effects;
-  std::erase(kept, effect);
   for (const calib::Unknown& constant : calib::Unknowns(base_.constants)) {
-    const Extension other =
-        with_constant(constant, kept, chosen.forms, fits_.without(chosen.fitted.model, effect, kept, chosen.forms));
+    if (stopped_) return "";
+    const calib::JointModel start = fits_.without(chosen.fitted.model, effect, without.effects, chosen.forms);
+    const Extension other = with_constant(constant, without.effects, without.forms, start);
     if (compared(without, other).deviations < options_.least_deviations ||
         compared(other, chosen).deviations >= options_.least_deviations)
       continue;
@@ -229,6 +228,7 @@ std::string EffectSearch::made_of_constant(const Extension& chosen, const Extens
 std::optional<Extension> EffectSearch::with_a_constant_asked_for(const Extension& chosen) {
   if (!leaves_rest(chosen)) return std::nullopt;
   for (const calib::Unknown& constant : calib::Unknowns(base_.constants)) {
+    if (stopped_) return std::nullopt;
     Extension other = with_constant(constant, chosen.effects, chosen.forms, chosen.fitted.model);
     const Trial gain = trial(chosen, other, constant.name);
     if (gain.comparison.deviations < options_.least_deviations || gain.share_of_rest < options_.scratch_gain_of_rest)

@@ -1,6 +1,6 @@
 #include "retargeting/arm_imitation.hpp"
 
-#include <ceres/ceres.h>
+#include <ceres/dynamic_numeric_diff_cost_function.h>
 
 #include <algorithm>
 #include <limits>
@@ -11,6 +11,7 @@
 #include "model/leg_kinematics.hpp"
 #include "pmg/periodic_slopes.hpp"
 #include "retargeting/arm_points.hpp"
+#include "retargeting/fit_angles.hpp"
 #include "retargeting/link_capsules.hpp"
 
 namespace pmg::retargeting {
@@ -79,22 +80,13 @@ void solve(const model::RobotModel& robot, const std::vector<int>& joints, doubl
   auto* cost = new Cost(&residuals, ceres::DO_NOT_TAKE_OWNERSHIP);
   cost->AddParameterBlock(static_cast<int>(joints.size()));
   cost->SetNumResiduals(residuals.count());
-  ceres::Problem problem;
-  problem.AddResidualBlock(cost, nullptr, angles.data());
+  Eigen::VectorXd lower(joints.size()), upper(joints.size());
   for (std::size_t i = 0; i < joints.size(); ++i) {
     const model::Joint& joint = robot.joints[static_cast<std::size_t>(joints[i])];
-    const double lower = joint.lower_rad + margin_rad, upper = joint.upper_rad - margin_rad;
-    problem.SetParameterLowerBound(angles.data(), static_cast<int>(i), lower);
-    problem.SetParameterUpperBound(angles.data(), static_cast<int>(i), upper);
-    angles[i] = std::clamp(angles[i], lower, upper);
+    lower[static_cast<Eigen::Index>(i)] = joint.lower_rad + margin_rad;
+    upper[static_cast<Eigen::Index>(i)] = joint.upper_rad - margin_rad;
   }
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = 30;
-  options.function_tolerance = 1e-9;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
+  fit_angles(cost, lower, upper, angles.data());
 }
 
 }  // namespace

@@ -1,9 +1,10 @@
 #include "retargeting/leg_imitation.hpp"
 
-#include <ceres/ceres.h>
+#include <ceres/autodiff_cost_function.h>
 
-#include <algorithm>
 #include <array>
+
+#include "retargeting/fit_angles.hpp"
 
 namespace pmg::retargeting {
 namespace {
@@ -110,22 +111,9 @@ std::vector<generator::LegPose> imitate_legs(const generator::RobotLegs& legs, c
   for (const HumanPose& pose : poses) {
     for (const Foot foot : {kLeft, kRight}) {
       LegVector<double> q = before[foot];
-      ceres::Problem problem;
       using Cost = ceres::AutoDiffCostFunction<ImitationResiduals, ImitationResiduals::kCount, kLegJoints>;
-      problem.AddResidualBlock(new Cost(new ImitationResiduals{legs.geometry[foot], pose.side[foot], before[foot]}),
-                               nullptr, q.data());
-      for (int i = 0; i < kLegJoints; ++i) {
-        problem.SetParameterLowerBound(q.data(), i, legs.lower[foot][i] + margin_rad);
-        problem.SetParameterUpperBound(q.data(), i, legs.upper[foot][i] - margin_rad);
-        q[i] = std::clamp(q[i], legs.lower[foot][i] + margin_rad, legs.upper[foot][i] - margin_rad);
-      }
-      ceres::Solver::Options options;
-      options.linear_solver_type = ceres::DENSE_QR;
-      options.max_num_iterations = 30;
-      options.function_tolerance = 1e-9;
-      options.logging_type = ceres::SILENT;
-      ceres::Solver::Summary summary;
-      ceres::Solve(options, &problem, &summary);
+      fit_angles(new Cost(new ImitationResiduals{legs.geometry[foot], pose.side[foot], before[foot]}),
+                 legs.lower[foot].array() + margin_rad, legs.upper[foot].array() - margin_rad, q.data());
       before[foot] = q;
     }
     result.push_back(before);

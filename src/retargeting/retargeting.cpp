@@ -93,6 +93,16 @@ double kept_share(const RetargetedClip& made) {
   return kept.sum() / speed.sum();
 }
 
+/// What a library promises beside likeness: velocity, clearance of feet, smooth curves.
+void weigh_promises(generator::GaitWeights& weights) {
+  weights.velocity = 9.0;
+  weights.velocity_yaw = 6.0;
+  weights.step_height = 2400.0;
+  weights.above_ground = 1800.0;
+  weights.foot_gap = 600.0;
+  weights.smooth = kSmooth;
+}
+
 /// Of the clip at full gain alone, as a library is accepted with it (generator/clip_report.hpp).
 GaitTask full_gain_task(const RetargetedClip& made) {
   GaitTask task = made.gait.task;
@@ -103,14 +113,9 @@ GaitTask full_gain_task(const RetargetedClip& made) {
   const double kept = kept_share(made);
   task.weights.reference *= kept;
   task.weights.bias *= kept;
+  weigh_promises(task.weights);
   task.weights.slip = 30.0;
-  task.weights.velocity = 9.0;
-  task.weights.velocity_yaw = 6.0;
   task.weights.clearance = 1200.0;
-  task.weights.smooth = kSmooth;
-  task.weights.step_height = 2400.0;
-  task.weights.above_ground = 1800.0;
-  task.weights.foot_gap = 600.0;
   return task;
 }
 
@@ -143,13 +148,8 @@ GaitTask half_gain_task(const generator::Making& making, const std::vector<const
   }
   task.weights.reference = generator::LegVector<double>::Constant(4.0);
   task.weights.bias = task.weights.reference;
-  task.weights.velocity = 9.0;
-  task.weights.velocity_yaw = 6.0;
+  weigh_promises(task.weights);
   task.weights.clearance = 400.0;
-  task.weights.step_height = 2400.0;
-  task.weights.above_ground = 1800.0;
-  task.weights.foot_gap = 600.0;
-  task.weights.smooth = kSmooth;
   task.scenarios.clear();
   const auto scenario = [&](double gain, double weight) {
     generator::Scenario s;
