@@ -43,13 +43,17 @@ void read_servo(Bench& bench, ConfigReader& drive) {
   take(bench, drive, "torque_Nm_per_V", "drive.torque_per_unit_Nm");
   take(bench, drive, "kt_V_s_per_rad", "drive.back_emf_s_per_rad");
   if (!drive.has("bus_V")) return;
-  try {  // a number, or remarks; what is nominal there says nothing but the unit of a recorded one
+  try {  // a number, or remarks, of which a nominal number tells the unit of a recorded voltage
     bench.supply_V = drive.required<double>("bus_V", files::positive());
     bench.nominal_supply_V = bench.supply_V;
   } catch (const files::ConfigError&) {
     ConfigReader remarks = drive.map("bus_V");
     for (const std::string& key : remarks.keys()) {
-      if (key.starts_with("nominal")) bench.nominal_supply_V = remarks.required<double>(key, files::positive());
+      if (!key.starts_with("nominal")) continue;
+      try {
+        bench.nominal_supply_V = remarks.required<double>(key, files::positive());
+      } catch (const files::ConfigError&) {
+      }
     }
   }
 }

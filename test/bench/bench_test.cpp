@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <fstream>
 #include <functional>
+#include <optional>
+#include <utility>
 
 #include "calib/synthetic_bench.hpp"
 #include "temporary_folder.hpp"
@@ -95,6 +97,19 @@ TEST_F(BenchFiles, AJointIsCalledAsBenchYamlSaysOrElseAsItsFolder) {
   EXPECT_EQ(bench::read_bench(folder_).joint_name(), folder_.filename().string());
   std::ofstream(folder_ / "bench.yaml", std::ios::app) << "joint: left_knee\n";
   EXPECT_EQ(bench::read_bench(folder_).joint_name(), "left_knee");
+}
+
+TEST_F(BenchFiles, OfAServoSayItsNominalVoltageAmongRemarks) {
+  const char* before = "law: position_pd";
+  for (const auto& [bus_V, nominal_V] : {std::pair{"12.5", std::optional(12.5)},
+                                         {"{nominal: 15, note: sags}", std::optional(15.0)},
+                                         {"{nominal: unknown}", std::optional<double>()},
+                                         {"{note: trust the column}", std::optional<double>()}}) {
+    const std::string text = std::string("law: servo_voltage\n  bus_V: ") + bus_V;
+    replace("bench.yaml", before, text);
+    EXPECT_EQ(bench::read_bench(folder_).nominal_supply_V, nominal_V) << bus_V;
+    replace("bench.yaml", text, before);
+  }
 }
 
 TEST_F(BenchFiles, AreReadAsTheyWereWritten) {
