@@ -72,6 +72,15 @@ TEST_P(Repeats, SayByHowMuchOneOfThemIsLateOrEarly) {
   }
 }
 
+TEST_P(Repeats, MayBeginTwoSamplesApart) {
+  for (const double samples : {2.0, -2.0}) {
+    test::RandomBench made = designs(GetParam(), 4);
+    late(made.runs[5], samples / made.bench.sample_rate_hz);
+    const std::vector<DataFault> found = found_in(made);
+    EXPECT_TRUE(found.empty()) << said(found);
+  }
+}
+
 TEST_P(Repeats, SayWhichTwoRunsStandForEachOther) {
   test::RandomBench made = designs(GetParam(), 3);
   std::swap(made.runs[1].recording, made.runs[8].recording);
