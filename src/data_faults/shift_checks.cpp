@@ -10,6 +10,7 @@
 #include "data_faults/column_checks.hpp"
 #include "data_faults/commanded_torque_check.hpp"
 #include "data_faults/row_checks.hpp"
+#include "data_faults/trajectory_checks.hpp"
 #include "fitting/statistics.hpp"
 
 namespace pmg::data_faults {
@@ -57,11 +58,15 @@ double least_shift_s(const Examined& e) {
 }
 
 /// A shift that a sibling shows, too, is physics: fast motion lags, and a weak drive lags more. Of three repeats and
-/// more the repeats themselves have told (repeat_faults()), more finely than a model.
+/// more with the same commands the repeats themselves have told (repeat_faults()), more finely than a model.
 void try_shift(const Examined& e, std::size_t run, const std::vector<Shift>& shifts, std::vector<Explained>& into) {
   const std::vector<std::size_t> alike = siblings(e, run);
   const bool repeated = same_condition(e.runs()[alike.front()], e.runs()[run]);
-  if (repeated && alike.size() > 1 && e.runs()[alike.front()].trajectory == e.runs()[run].trajectory) return;
+  const auto compared = std::ranges::count_if(alike, [&](std::size_t other) {
+    return repeated && e.runs()[other].trajectory == e.runs()[run].trajectory &&
+           same_commands(e.runs()[other], e.runs()[run], 1.0, e.options());
+  });
+  if (compared > 1) return;
   double usual_s = 0.0, nearest_s = std::numeric_limits<double>::infinity();
   for (const std::size_t sibling : alike) {
     const double apart_s = std::abs(shifts[run].lag_s - shifts[sibling].lag_s);

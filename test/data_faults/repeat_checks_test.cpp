@@ -10,6 +10,7 @@
 
 #include "data_faults/benches.hpp"
 #include "data_faults/column_checks.hpp"
+#include "data_faults/examine.hpp"
 
 namespace pmg::data_faults {
 namespace {
@@ -108,6 +109,18 @@ TEST_P(Repeats, AColdRunIsNotALateOne) {
 }
 
 INSTANTIATE_TEST_SUITE_P(DataFaults, Repeats, testing::Range(1U, 9U));
+
+/// Then they no longer had the same commands: the model tells.
+TEST(RepeatsOfFour, DoNotHideThatTheCommandsOfOneOfThemAreLate) {
+  test::RandomBench made = designs(3, 4);
+  for (bench::BenchRun& run : made.runs) run.recording.dq_rad_s.clear();  // it would be said to be early, too
+  bench::Recording& r = made.runs[5].recording;
+  r.q_cmd_rad = bench::shifted(r.t_s, r.q_cmd_rad, -0.06);
+  const std::vector<DataFault> found = find_data_faults(made.bench, made.runs, std::nullopt, {}, 1);
+  ASSERT_EQ(found.size(), 1U) << said(found);
+  EXPECT_EQ(found.front().kind, Kind::kTimeShift);
+  EXPECT_EQ(found.front().files, std::vector<std::string>{made.runs[5].file});
+}
 
 TEST(RepeatsOfTwo, SayNothingOfWhichOfThemIsLate) {
   test::RandomBench made = designs(2, 2);
