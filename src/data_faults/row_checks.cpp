@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "data_faults/trajectory_checks.hpp"
 #include "fitting/statistics.hpp"
@@ -100,15 +101,11 @@ Explained exchanged(const Examined& e, const Suspect& a, const Suspect& b) {
   const bool sure = std::min(gain_a, gain_b) > std::log(o.pair_gain) && gain_a + gain_b > 2.0 * std::log(o.row_gain) &&
                     gain_a + gain_b > kOfBest * (a.gain + b.gain) && mends(e, e.log_error()[a.run], log_a) &&
                     mends(e, e.log_error()[b.run], log_b);
-  return {.fault = {.kind = Kind::kSwappedRuns,
-                    .where = fmt::format("runs.csv, rows {} and {}", first, second),
-                    .correction = fmt::format("exchange the files {} and {} in runs.csv", first, second),
-                    .evidence = {fmt::format("{}: {}", first, gain_text(e, e.log_error()[a.run], log_a)),
-                                 fmt::format("{}: {}", second, gain_text(e, e.log_error()[b.run], log_b))},
-                    .fixes = {of_a, of_b},
-                    .files = {first, second}},
-          .gain = gain_a + gain_b,
-          .sure = sure};
+  DataFault fault = swapped_runs(e.runs()[a.run], e.runs()[b.run],
+                                 {fmt::format("{}: {}", first, gain_text(e, e.log_error()[a.run], log_a)),
+                                  fmt::format("{}: {}", second, gain_text(e, e.log_error()[b.run], log_b))});
+  fault.fixes = {of_a, of_b};  // each keeps its trajectory, which its commands have told
+  return {.fault = std::move(fault), .gain = gain_a + gain_b, .sure = sure};
 }
 
 Explained alone(const Examined& e, const Suspect& suspect) {

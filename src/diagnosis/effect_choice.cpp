@@ -209,9 +209,9 @@ void EffectSearch::free_constant(const calib::Unknown& constant, const Extension
 /// on.
 std::string EffectSearch::made_of_constant(const Extension& chosen, const Extension& without,
                                            const std::string& effect) {
+  const calib::JointModel start = fits_.without(chosen.fitted.model, effect, without.effects, chosen.forms);
   for (const calib::Unknown& constant : calib::Unknowns(base_.constants)) {
     if (stopped_) return "";
-    const calib::JointModel start = fits_.without(chosen.fitted.model, effect, without.effects, chosen.forms);
     const Extension other = with_constant(constant, without.effects, without.forms, start);
     if (compared(without, other).deviations < options_.least_deviations ||
         compared(other, chosen).deviations >= options_.least_deviations)

@@ -50,6 +50,20 @@ def cycle(batch: ReferenceBatch, command: np.ndarray) -> tuple[np.ndarray, np.nd
     return rows[order], phase[order]
 
 
+def half_a_cycle_later(phase: np.ndarray, other_phase: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Two walks are sampled at different phases: linear interpolation over 0.01 of a cycle sets the tolerances."""
+    three = np.concatenate([other_phase - 1, other_phase, other_phase + 1])
+    return np.interp((phase + 0.5) % 1.0, three, np.tile(values, 3))
+
+
+def mirrored_measurements(description: dict, gyro, quat, q, dq, action) -> tuple:
+    """What the mirrored robot measures and did last."""
+    joints, actions = joint_mirror(description, [j["name"] for j in description["joints"]]), action_mirror(description)
+    stand = np.array([j["stand_rad"] for j in description["joints"]])
+    through = lambda mirror, x: mirror(torch.from_numpy(x)).numpy()
+    return gyro * [-1, 1, -1], mirrored_quaternion(quat), stand + through(joints, q - stand), through(joints, dq), through(actions, action)
+
+
 @pytest.mark.parametrize("variant", ["pmg", "without_gco", "single_gait"])
 def test_a_mirrored_command_gives_the_mirrored_references_half_a_cycle_later(description, variant):
     """The loss relies on this: the policy's inputs are mirror images."""
@@ -59,7 +73,6 @@ def test_a_mirrored_command_gives_the_mirrored_references_half_a_cycle_later(des
     others, other_phase = cycle(batch, command_mirrored(command))
     names = [j["name"] for j in description["joints"]]
     joints = joint_mirror(description, names)
-    three = np.concatenate([other_phase - 1, other_phase, other_phase + 1])
     of = lambda name: list(description["quantities"][name]["mirror_sign"].values())
     signs = lambda name: Mirror(torch.arange(len(of(name))), torch.tensor(of(name)))
     for field, mirror, tolerance in (
@@ -71,16 +84,13 @@ def test_a_mirrored_command_gives_the_mirrored_references_half_a_cycle_later(des
         expected = mirror(torch.from_numpy(np.ascontiguousarray(rows[:, batch.fields[field]]))).numpy()
         found = others[:, batch.fields[field]]
         for i in range(found.shape[1]):
-            # Two walks are sampled at different phases: linear interpolation over 0.01 of a cycle sets the tolerance.
-            at = np.interp((phase + 0.5) % 1.0, three, np.tile(found[:, i], 3))
+            at = half_a_cycle_later(phase, other_phase, found[:, i])
             assert np.abs(at - expected[:, i]).mean() < tolerance, f"{field} {i}"
 
 
 def test_the_controllers_observation_of_the_mirrored_robot_is_the_mirrored_observation(description):
     """Robot state, history and last action through the C++ assembler; its command and reference are those of rest."""
     random = np.random.default_rng(3)
-    names = [j["name"] for j in description["joints"]]
-    joints, actions = joint_mirror(description, names), action_mirror(description)
     stand = np.array([j["stand_rad"] for j in description["joints"]])
     batches = [ReferenceBatch(LIBRARY, ROBOT, "pmg", 1, 1, 1) for _ in range(2)]
     command = np.array([0.0, 0.0, 0.0, 0.1, 0.05, -0.05], np.float32)
@@ -92,14 +102,7 @@ def test_the_controllers_observation_of_the_mirrored_robot_is_the_mirrored_obser
         batches[0].run(1, command[None, None])
         batches[1].run(1, command_mirrored(command)[None, None])
         seen = batches[0].observe(gyro, quat, q, dq, action, first=tick == 0)
-        seen_mirrored = batches[1].observe(
-            gyro * [-1, 1, -1],
-            mirrored_quaternion(quat),
-            stand + through(joints, q - stand),
-            through(joints, dq),
-            through(actions, action),
-            first=tick == 0,
-        )
+        seen_mirrored = batches[1].observe(*mirrored_measurements(description, gyro, quat, q, dq, action), first=tick == 0)
         # Reference joints are exactly symmetric, u' up to where the optimisation stops.
         np.testing.assert_allclose(seen_mirrored, through(observation_mirror(description), seen), atol=1e-4)
 
@@ -108,15 +111,10 @@ def test_a_mirrored_walk_is_observed_as_the_mirrored_observation_half_a_cycle_la
     """Every element of the layout, at a robot that keeps still: what is left changes with the walk. A quantity with one value
     a foot, for instance, must change sides."""
     random = np.random.default_rng(5)
-    names = [j["name"] for j in description["joints"]]
     stand = np.array([j["stand_rad"] for j in description["joints"]])
     gyro, quat, action = random.normal(size=3), random.normal(size=4), random.normal(size=12).astype(np.float32)
     quat /= np.linalg.norm(quat)
-    q, dq = stand + 0.3 * random.normal(size=31), 3 * random.normal(size=31)
-    through = lambda mirror, x: mirror(torch.from_numpy(x)).numpy()
-    joints = joint_mirror(description, names)
-    mirrored_action = through(action_mirror(description), action)
-    mirrored = gyro * [-1, 1, -1], mirrored_quaternion(quat), stand + through(joints, q - stand), through(joints, dq), mirrored_action
+    measured = gyro, quat, stand + 0.3 * random.normal(size=31), 3 * random.normal(size=31), action
 
     def walk(command: np.ndarray, state: tuple) -> tuple[np.ndarray, np.ndarray]:
         batch = ReferenceBatch(LIBRARY, ROBOT, "pmg", 1, 1, 1)
@@ -129,12 +127,11 @@ def test_a_mirrored_walk_is_observed_as_the_mirrored_observation_half_a_cycle_la
         return np.array(seen[800:])[order], np.array(phase[800:])[order]
 
     command = np.array([0.3, 0.1, 0.4, 0.05, 0.08, -0.04], np.float32)
-    seen, phase = walk(command, (gyro, quat, q, dq, action))
-    others, other_phase = walk(command_mirrored(command), mirrored)
-    expected = through(observation_mirror(description), seen)
-    three = np.concatenate([other_phase - 1, other_phase, other_phase + 1])
+    seen, phase = walk(command, measured)
+    others, other_phase = walk(command_mirrored(command), mirrored_measurements(description, *measured))
+    expected = observation_mirror(description)(torch.from_numpy(seen)).numpy()
     for i, name in enumerate(f"{term['name']} {element}" for term in description["observation"]["terms"] for element in term["elements"]):
-        at = np.interp((phase + 0.5) % 1.0, three, np.tile(others[:, i], 3))
+        at = half_a_cycle_later(phase, other_phase, others[:, i])
         assert np.abs(at - expected[:, i]).mean() < 0.02, name  # as in the test of references above
 
 
