@@ -17,13 +17,17 @@ namespace pmg::data_faults {
 
 namespace {
 
-/// True if a position of these runs is too large for radians or metres after the corrections of the faults, too.
-bool stays_implausible(std::vector<bench::BenchRun> runs, const std::vector<DataFault>& faults, bool linear) {
+std::vector<bench::BenchRun> corrected(std::vector<bench::BenchRun> runs, const std::vector<DataFault>& faults) {
   for (const DataFault& fault : faults) {
     for (bench::BenchRun& run : runs) {
       for (const bench::Correction& fix : fault.fixes) bench::correct(run, fix);
     }
   }
+  return runs;
+}
+
+/// True if a position of these runs is too large for radians or metres.
+bool implausible(const std::vector<bench::BenchRun>& runs, bool linear) {
   return !std::ranges::all_of(runs, [&](const auto& run) { return plausible_positions(run.recording, linear); });
 }
 
@@ -47,6 +51,33 @@ void take_what_the_model_tells(Examined& runs, std::vector<DataFault>& into) {
     }
     runs.fit();
   }
+}
+
+/// The bench with positions in whatever unit.
+bench::Bench in_any_unit(bench::Bench bench) {
+  bench.other_units = true;
+  return bench;
+}
+
+/// The runs that any of the filters keeps, and the files of each filter: those that are fitted and those that are
+/// scored.
+struct FilteredRuns {
+  std::vector<bench::BenchRun> runs;
+  std::vector<std::vector<std::string>> groups;
+};
+
+FilteredRuns read_groups(const bench::Bench& bench, const std::vector<std::string>& filters) {
+  FilteredRuns found;
+  for (std::size_t f = 0; f < filters.size(); ++f) {
+    if (f > 0 && filters[f].empty()) continue;  // no runs are held out
+    found.groups.emplace_back();
+    for (bench::BenchRun& run : bench.read_runs(bench::RowFilter(filters[f]))) {
+      found.groups.back().push_back(run.file);
+      const bool there = std::ranges::any_of(found.runs, [&](const auto& other) { return other.file == run.file; });
+      if (!there) found.runs.push_back(std::move(run));
+    }
+  }
+  return found;
 }
 
 }  // namespace
@@ -91,6 +122,16 @@ std::vector<DataFault> find_data_faults(const bench::Bench& bench, const std::ve
   return found;
 }
 
+std::vector<DataFault> find_shared_faults(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
+                                          const calib::JointModel& model, const DataFaultOptions& options,
+                                          unsigned threads) {
+  std::vector<DataFault> found;
+  Examined examined(bench, runs, model.actuator, options, threads);
+  take(gain_fault_beside(examined, model), examined, found);
+  take(mass_fault_beside(examined, model), examined, found);
+  return found;
+}
+
 std::vector<DataFault> of_used_columns(std::vector<DataFault> faults, const std::vector<bench::Column>& unused) {
   const auto is_unused = [&](const bench::Correction& fix) {
     return !fix.columns.empty() && std::ranges::all_of(fix.columns, [&](bench::Column column) {
@@ -107,28 +148,29 @@ Examination examine(const bench::Bench& bench, const std::vector<std::string>& f
                     const std::optional<model::ActuatorParameters>& model, const ExamineOptions& options,
                     unsigned threads, const work::Progress& progress) {
   if (progress.report) progress.report(0.0, "looking for faults of the data");
-  bench::Bench whatever_unit = bench;
-  whatever_unit.other_units = true;
-  std::vector<bench::BenchRun> runs;
-  std::vector<std::vector<std::string>> groups;
-  for (std::size_t f = 0; f < filters.size(); ++f) {
-    if (f > 0 && filters[f].empty()) continue;  // no runs are held out
-    groups.emplace_back();
-    for (bench::BenchRun& run : whatever_unit.read_runs(bench::RowFilter(filters[f]))) {
-      groups.back().push_back(run.file);
-      const bool there =
-          std::any_of(runs.begin(), runs.end(), [&](const bench::BenchRun& other) { return other.file == run.file; });
-      if (!there) runs.push_back(std::move(run));
-    }
-  }
-  const bool linear = bench.rig == bench::Rig::kLinear, implausible = stays_implausible(runs, {}, linear);
+  const auto [runs, groups] = read_groups(in_any_unit(bench), filters);
+  const bool linear = bench.rig == bench::Rig::kLinear, other_units = implausible(runs, linear);
   std::vector<DataFault> faults = find_data_faults(bench, runs, model, options.decide_by, threads);
-  if (implausible && stays_implausible(runs, faults, linear)) {  // no unit: let the reader refuse it
+  if (other_units && implausible(corrected(runs, faults), linear)) {  // no unit: let the reader refuse it
     for (const std::string& filter : filters) (void)bench.read_runs(bench::RowFilter(filter));
   }
   Examination found = examination(of_used_columns(std::move(faults), options.unused), runs, options.handling, groups);
-  found.other_units = implausible;
+  found.other_units = other_units;
   found.options = options.decide_by;
+  return found;
+}
+
+Examination examine_again(const bench::Bench& bench, const std::vector<std::string>& filters, const Examination& first,
+                          const calib::JointModel& model, unsigned threads) {
+  const FilteredRuns read = read_groups(in_any_unit(bench), filters);
+  std::vector<DataFault> faults = first.faults;
+  const std::vector<DataFault> more =
+      find_shared_faults(bench, corrected(read.runs, first.faults), model, first.options, threads);
+  if (more.empty()) return first;
+  faults.insert(faults.end(), more.begin(), more.end());
+  Examination found = examination(std::move(faults), read.runs, first.handling, read.groups);
+  found.other_units = first.other_units;
+  found.options = first.options;
   return found;
 }
 

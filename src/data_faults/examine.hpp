@@ -7,6 +7,7 @@
 
 #include "bench/bench.hpp"
 #include "bench/correction.hpp"
+#include "calib/single_joint.hpp"
 #include "data_faults/data_fault.hpp"
 #include "data_faults/options.hpp"
 #include "model/actuator_parameters.hpp"
@@ -48,6 +49,12 @@ std::vector<DataFault> find_data_faults(const bench::Bench& bench, const std::ve
                                         const std::optional<model::ActuatorParameters>& model,
                                         const DataFaultOptions& options, unsigned threads);
 
+/// A second look, beside a model that misses little, as a diagnosis leaves it: (bench, its runs, that model) => (loads
+/// and gains whose numbers are wrong). A model that lacks an effect hides them.
+std::vector<DataFault> find_shared_faults(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
+                                          const calib::JointModel& model, const DataFaultOptions& options,
+                                          unsigned threads);
+
 /// Without the faults that are in unused columns alone.
 std::vector<DataFault> of_used_columns(std::vector<DataFault> faults, const std::vector<bench::Column>& unused);
 
@@ -56,6 +63,11 @@ std::vector<DataFault> of_used_columns(std::vector<DataFault> faults, const std:
 Examination examine(const bench::Bench& bench, const std::vector<std::string>& filters,
                     const std::optional<model::ActuatorParameters>& model, const ExamineOptions& options,
                     unsigned threads, const work::Progress& progress = {});
+
+/// (bench, filters of runs.csv, first examination, the model that a diagnosis of the rest left) => (examination with
+/// what find_shared_faults finds besides).
+Examination examine_again(const bench::Bench& bench, const std::vector<std::string>& filters, const Examination& first,
+                          const calib::JointModel& model, unsigned threads);
 
 /// (faults, runs, handling, groups of files) => (what the diagnosis goes on with). A fault's runs are left out as long
 /// as half of all runs stay, and one of each group: the runs that are fitted, and those that are scored.

@@ -90,6 +90,11 @@ struct DataFaultOptions {
   work::Threshold exact_evidence{
       30.0, "", "and twice the logarithm of the likelihood grows by so much, over no factor and over one effect",
       "five and a half deviations"};
+  work::Threshold others_within{
+      0.5, "",
+      "beside the model of a diagnosis one load or gain is wrong if the factors of all others are within this share of "
+      "how far it stands apart from them: physics that depends on the load is a trend",
+      kAssumed};
   work::Threshold feed_forward_gain{
       1.2, "", "the feed-forward has another unit or sign if its correction divides the error on its runs by so much",
       kPlants};
@@ -103,7 +108,7 @@ struct DataFaultOptions {
                  usual_deviations, largest_usual_error, column_gain, model_shift_samples, shift_gain, lone_shift_gain,
                  longest_delay_s, row_gain, pair_gain, least_mass_factor, mass_gain, least_gain_factor, gain_gain,
                  damping_gain, least_common_gain, better_than_common, factor_deviations, least_exact_factor,
-                 exact_floors, exact_evidence, feed_forward_gain, fitted_runs, most_faults)
+                 exact_floors, exact_evidence, others_within, feed_forward_gain, fitted_runs, most_faults)
 };
 
 }  // namespace pmg::data_faults

@@ -55,15 +55,6 @@ double noise_rad(const calib::SingleJoint& joint) {
   return std::max(1e-7, bench::sensor_noise_rad(joint.run().recording));
 }
 
-calib::JointModel with_factors(calib::JointModel model, const RunFactors& factors) {
-  model.actuator.drive.kp_scale *= factors.kp;
-  model.actuator.drive.kd_scale *= factors.kd;
-  model.inertia_scale *= factors.load;
-  model.gravity_scale *= factors.load;
-  model.feed_forward_scale *= factors.commanded_torque;
-  return model;
-}
-
 std::vector<RunFactors> factors_of_runs(std::size_t runs, const std::vector<SharedFactor>& shared,
                                         const std::vector<double>& factors) {
   std::vector<RunFactors> found(runs);
@@ -80,6 +71,15 @@ double log_of(const Eigen::VectorXd& residual_rad, double noise_rad) {
 }
 
 }  // namespace
+
+calib::JointModel with_factors(calib::JointModel model, const RunFactors& factors) {
+  model.actuator.drive.kp_scale *= factors.kp;
+  model.actuator.drive.kd_scale *= factors.kd;
+  model.inertia_scale *= factors.load;
+  model.gravity_scale *= factors.load;
+  model.feed_forward_scale *= factors.commanded_torque;
+  return model;
+}
 
 QuickModel::QuickModel(const bench::Bench& bench, const std::optional<model::ActuatorParameters>& given,
                        unsigned threads)

@@ -15,6 +15,9 @@ struct RunFactors {
   double kp = 1.0, kd = 1.0, load = 1.0, commanded_torque = 1.0;
 };
 
+/// (model, factors of a run) => (the model with which the run's rollout has them).
+calib::JointModel with_factors(calib::JointModel model, const RunFactors& factors);
+
 /// One unknown factor that some runs share: of a gain, of a load (inertia and gravity), or of the torque that the drive
 /// is commanded.
 struct SharedFactor {

@@ -5,8 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
+#include <optional>
+#include <tuple>
 #include <utility>
 
+#include "calib/joint_runs.hpp"
 #include "calib/unknown.hpp"
 #include "data_faults/column_checks.hpp"
 #include "fitting/statistics.hpp"
@@ -29,6 +33,19 @@ struct Tried {
   double factor = 1.0;
   double gain = 0.0, gain_deviation = 0.0;  ///< mean over the group's runs of the fall of ln error, and its deviation
 };
+
+double mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// Mean, and its standard deviation.
+std::pair<double, double> mean_and_deviation(const std::vector<double>& values) {
+  const double middle = mean(values);
+  double squares = 0.0;
+  for (const double value : values) squares += std::pow(value - middle, 2);
+  const auto n = static_cast<double>(values.size());
+  return {middle, n < 2.0 ? 0.0 : std::sqrt(squares / (n - 1.0) / n)};
+}
 
 class Groups {
  public:
@@ -67,11 +84,7 @@ class Groups {
     Tried tried{.fit = fit, .factor = fit.factors.front()};
     std::vector<double> gains;
     for (const std::size_t run : of(which)) gains.push_back(without_.log_error[run] - fit.log_error[run]);
-    double squares = 0.0;
-    for (const double gain : gains) tried.gain += gain / static_cast<double>(gains.size());
-    for (const double gain : gains) squares += std::pow(gain - tried.gain, 2);
-    const auto n = static_cast<double>(gains.size());
-    tried.gain_deviation = gains.size() < 2 ? 0.0 : std::sqrt(squares / (n - 1.0) / n);
+    std::tie(tried.gain, tried.gain_deviation) = mean_and_deviation(gains);
     return tried;
   }
 
@@ -229,27 +242,113 @@ DataFault gain_text(const Examined& e, const std::string& column, double value, 
   return fault;
 }
 
-std::vector<DataFault> gain_fault_of(const Examined& e, double RunFactors::*of) {
-  const DataFaultOptions& o = e.options();
+DataFault one_gain(const Examined& e, double RunFactors::*of, double value, const Tried& tried) {
   const bool kp = of == &RunFactors::kp;
   const std::string column = !kp                                               ? "kd_Nm_s_per_rad"
                              : e.bench().law == bench::DriveLaw::kServoVoltage ? "kp_firmware"
                                                                                : "kp_Nm_per_rad";
+  DataFault fault = gain_text(e, column, value, tried.factor, tried);
+  fault.files = files_with(e, [&](const bench::BenchRun& run) { return (kp ? run.kp : run.kd) == value; });
+  bench::Correction fix{.files = fault.files, .columns = {}};
+  (kp ? fix.kp_factor : fix.kd_factor) = tried.factor;
+  fault.fixes = {fix};
+  return fault;
+}
+
+DataFault one_load(const Examined& e, double inertia_kg_m2, const Tried& tried) {
+  DataFault fault{.kind = Kind::kMass, .where = {}, .correction = {}};
+  fault.where = fmt::format("bench.yaml, loads: the one with inertia_kg_m2 {:.6g}", inertia_kg_m2);
+  for (std::size_t l = 0; l < e.bench().loads.size(); ++l) {
+    const bench::BenchLoad& load = e.bench().loads[l];
+    if (load.load.inertia_kg_m2 != inertia_kg_m2) continue;
+    fault.where =
+        fmt::format("bench.yaml, loads[{}] (mass_kg {:.6g}, length_m {:.6g})", l, load.mass_kg, load.length_m);
+    fault.correction = fmt::format("mass_kg {:.4g} instead of {:.4g}: ", load.mass_kg * tried.factor, load.mass_kg);
+  }
+  fault.correction += fmt::format("inertia and gravity times {:.3g}", tried.factor);
+  fault.evidence = {deviation_text(tried)};
+  fault.files = files_with(e, [&](const bench::BenchRun& run) { return run.load.inertia_kg_m2 == inertia_kg_m2; });
+  fault.fixes = {{.files = fault.files, .columns = {}, .load_factor = tried.factor}};
+  return fault;
+}
+
+std::vector<DataFault> gain_fault_of(const Examined& e, double RunFactors::*of) {
+  const DataFaultOptions& o = e.options();
+  const bool kp = of == &RunFactors::kp;
   const Groups groups(e, of);
   if (groups.all().empty()) return {};
   const Odd odd = odd_one(e, groups, {o.least_gain_factor, kp ? o.gain_gain : o.damping_gain, kp, kp});
   // Friction and speed limits change what a damping does by any factor: of kd only a firmware's factor is believed.
-  if (odd.group >= 0 && (kp || firmware_factor(odd.tried.factor, o.unit_tolerance))) {
-    const double value = groups.all()[static_cast<std::size_t>(odd.group)].value;
-    DataFault fault = gain_text(e, column, value, odd.tried.factor, odd.tried);
-    fault.files = files_with(e, [&](const bench::BenchRun& run) { return (kp ? run.kp : run.kd) == value; });
-    bench::Correction fix{.files = fault.files, .columns = {}};
-    (kp ? fix.kp_factor : fix.kd_factor) = odd.tried.factor;
-    fault.fixes = {fix};
-    fault.evidence.insert(fault.evidence.end(), odd.instead.begin(), odd.instead.end());
-    return {fault};
+  if (odd.group < 0 || !(kp || firmware_factor(odd.tried.factor, o.unit_tolerance))) return {};
+  DataFault fault = one_gain(e, of, groups.all()[static_cast<std::size_t>(odd.group)].value, odd.tried);
+  fault.evidence.insert(fault.evidence.end(), odd.instead.begin(), odd.instead.end());
+  return {fault};
+}
+
+/// The factor of one number with which a given model misses some runs least, whatever it is for the other runs.
+struct BestFactor {
+  double value = 0.0;  ///< of the number
+  std::vector<calib::SingleJoint> runs;
+  double log_factor = 0.0;
+};
+
+std::vector<double> errors_with(const Examined& e, const BestFactor& one, const calib::JointModel& model,
+                                double RunFactors::*of, double log_factor) {
+  RunFactors factors;
+  factors.*of = std::exp(log_factor);
+  return e.model().log_errors(one.runs, with_factors(model, factors));
+}
+
+std::vector<BestFactor> best_factors(const Examined& e, const calib::JointModel& model, double RunFactors::*of) {
+  constexpr std::size_t kMostRuns = 12;
+  constexpr int kSteps = 12;
+  const double step = std::log(2.5) / kSteps;
+  std::map<double, std::vector<calib::SingleJoint>> runs;
+  for (const bench::BenchRun& run : e.runs())
+    runs[of == &RunFactors::kp ? run.kp : run.load.inertia_kg_m2].push_back(e.model().joint(run));
+  std::vector<BestFactor> found;
+  for (const auto& [value, all] : runs) {
+    if (value == 0.0) continue;
+    BestFactor one{.value = value, .runs = calib::spread(all, kMostRuns)};
+    std::vector<double> loss;
+    for (int i = -kSteps; i <= kSteps; ++i) loss.push_back(mean(errors_with(e, one, model, of, i * step)));
+    const auto least = std::clamp<std::ptrdiff_t>(std::ranges::min_element(loss) - loss.begin(), 1, 2 * kSteps - 1);
+    const double before = loss[least - 1], at = loss[least], after = loss[least + 1];
+    const double bend = before - 2.0 * at + after;
+    const double beside = bend > 0.0 ? std::clamp(0.5 * (before - after) / bend, -1.0, 1.0) : 0.0;
+    one.log_factor = (static_cast<double>(least - kSteps) + beside) * step;
+    found.push_back(std::move(one));
   }
-  return {};
+  return found;
+}
+
+/// The value whose runs want another factor than those of all other values, which want about the same; and that factor
+/// over theirs.
+std::optional<std::pair<double, Tried>> apart(const Examined& e, const calib::JointModel& model, double RunFactors::*of,
+                                              double least_factor, double least_gain) {
+  constexpr std::size_t kFewestValues = 3;  // of two nothing tells which one is wrong
+  constexpr std::size_t kFewestRunsOfValue = 3;
+  const DataFaultOptions& o = e.options();
+  const std::vector<BestFactor> all = best_factors(e, model, of);
+  if (all.size() < kFewestValues) return std::nullopt;
+  for (const BestFactor& one : all) {
+    std::vector<double> others;
+    for (const BestFactor& other : all) {
+      if (other.value != one.value) others.push_back(other.log_factor);
+    }
+    const double usual = fitting::median(others), off = one.log_factor - usual;
+    const bool stands_apart = std::ranges::all_of(
+        others, [&](double other) { return std::abs(other - usual) < o.others_within * std::abs(off); });
+    Tried tried{.fit = {}, .factor = std::exp(off)};
+    if (one.runs.size() < kFewestRunsOfValue || !stands_apart || !beyond(tried.factor, least_factor)) continue;
+    std::vector<double> gains = errors_with(e, one, model, of, usual);
+    const std::vector<double> with = errors_with(e, one, model, of, one.log_factor);
+    for (std::size_t i = 0; i < gains.size(); ++i) gains[i] -= with[i];
+    std::tie(tried.gain, tried.gain_deviation) = mean_and_deviation(gains);
+    if (tried.gain > std::log(least_gain) && tried.gain > o.factor_deviations * tried.gain_deviation)
+      return std::pair(one.value, tried);
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -259,22 +358,24 @@ std::vector<DataFault> mass_fault(const Examined& e) {
   const Groups groups(e, &RunFactors::load);
   const Odd odd = odd_one(e, groups, {o.least_mass_factor, o.mass_gain, true, false});
   if (odd.group < 0) return {};
-  const double inertia = groups.all()[static_cast<std::size_t>(odd.group)].value, factor = odd.tried.factor;
-  DataFault fault{.kind = Kind::kMass, .where = {}, .correction = {}};
-  fault.where = fmt::format("bench.yaml, loads: the one with inertia_kg_m2 {:.6g}", inertia);
-  for (std::size_t l = 0; l < e.bench().loads.size(); ++l) {
-    const bench::BenchLoad& load = e.bench().loads[l];
-    if (load.load.inertia_kg_m2 != inertia) continue;
-    fault.where =
-        fmt::format("bench.yaml, loads[{}] (mass_kg {:.6g}, length_m {:.6g})", l, load.mass_kg, load.length_m);
-    fault.correction = fmt::format("mass_kg {:.4g} instead of {:.4g}: ", load.mass_kg * factor, load.mass_kg);
-  }
-  fault.correction += fmt::format("inertia and gravity times {:.3g}", factor);
-  fault.evidence = {deviation_text(odd.tried)};
+  DataFault fault = one_load(e, groups.all()[static_cast<std::size_t>(odd.group)].value, odd.tried);
   fault.evidence.insert(fault.evidence.end(), odd.instead.begin(), odd.instead.end());
-  fault.files = files_with(e, [&](const bench::BenchRun& run) { return run.load.inertia_kg_m2 == inertia; });
-  fault.fixes = {{.files = fault.files, .columns = {}, .load_factor = factor}};
   return {fault};
+}
+
+std::vector<DataFault> gain_fault_beside(const Examined& e, const calib::JointModel& model) {
+  if (e.bench().law == bench::DriveLaw::kTorque) return {};
+  const DataFaultOptions& o = e.options();
+  const auto odd = apart(e, model, &RunFactors::kp, o.least_gain_factor, o.gain_gain);
+  if (!odd) return {};
+  return {one_gain(e, &RunFactors::kp, odd->first, odd->second)};
+}
+
+std::vector<DataFault> mass_fault_beside(const Examined& e, const calib::JointModel& model) {
+  const DataFaultOptions& o = e.options();
+  const auto odd = apart(e, model, &RunFactors::load, o.least_mass_factor, o.mass_gain);
+  if (!odd) return {};
+  return {one_load(e, odd->first, odd->second)};
 }
 
 std::vector<DataFault> gain_fault(const Examined& e) {

@@ -294,14 +294,22 @@ class JointDiagnosisRun {
 
 Diagnosis diagnose(const bench::Bench& bench, const DiagnoseOptions& options, DiagnosedRuns* runs,
                    const work::Progress& progress) {
-  const data_faults::Examination data =
-      data_faults::examine(bench, {options.fit, options.score}, options.model, options.data, options.threads, progress);
+  const std::vector<std::string> filters = {options.fit, options.score};
+  data_faults::Examination data =
+      data_faults::examine(bench, filters, options.model, options.data, options.threads, progress);
   std::atomic<bool> stopped{false};  // for good: whoever asked has cut its work short
   const work::Progress lasting{.report = progress.report, .interrupted = [&] {
                                  if (progress.interrupted_now()) stopped = true;
                                  return stopped.load();
                                }};
   Diagnosis found = JointDiagnosisRun(data_faults::examined_bench(bench, data), options, lasting).run(runs);
+  // A wrong mass or gain shows beside a model that misses little.
+  if (!found.causes.empty() && !lasting.interrupted_now()) {
+    const std::size_t known = data.faults.size();
+    data = data_faults::examine_again(bench, filters, data, found.after, options.threads);
+    if (data.faults.size() > known && !data.uncorrected())
+      found = JointDiagnosisRun(data_faults::examined_bench(bench, data), options, lasting).run(runs);
+  }
   found.data = data;
   return found;
 }

@@ -211,7 +211,7 @@ std::string EffectSearch::made_of_constant(const Extension& chosen, const Extens
                                            const std::string& effect) {
   const calib::JointModel start = fits_.without(chosen.fitted.model, effect, without.effects, chosen.forms);
   for (const calib::Unknown& constant : calib::Unknowns(base_.constants)) {
-    if (stopped_) return "";
+    if (!going(fmt::format("trying {} in its place", constant.name))) return "";
     const Extension other = with_constant(constant, without.effects, without.forms, start);
     if (compared(without, other).deviations < options_.least_deviations ||
         compared(other, chosen).deviations >= options_.least_deviations)
@@ -228,7 +228,7 @@ std::string EffectSearch::made_of_constant(const Extension& chosen, const Extens
 std::optional<Extension> EffectSearch::with_a_constant_asked_for(const Extension& chosen) {
   if (!leaves_rest(chosen)) return std::nullopt;
   for (const calib::Unknown& constant : calib::Unknowns(base_.constants)) {
-    if (stopped_) return std::nullopt;
+    if (!going(fmt::format("trying {} beside the effects", constant.name))) return std::nullopt;
     Extension other = with_constant(constant, chosen.effects, chosen.forms, chosen.fitted.model);
     const Trial gain = trial(chosen, other, constant.name);
     if (gain.comparison.deviations < options_.least_deviations || gain.share_of_rest < options_.scratch_gain_of_rest)
@@ -241,12 +241,13 @@ std::optional<Extension> EffectSearch::with_a_constant_asked_for(const Extension
 
 Settled EffectSearch::settled(Extension chosen) {
   for (;;) {
+    (void)going("fitting with what is known of the simulation's numbers");
     Extension with_priors = refit_with_priors(chosen);
     if (with_priors.fitted.squares < options_.settled_squares * chosen.fitted.squares) chosen = with_priors;
     std::string weakest, why;
     double least = std::numeric_limits<double>::infinity();
     for (const std::string& name : chosen.effects) {
-      if (measured(name) != nullptr || stopped_) continue;
+      if (measured(name) != nullptr || !going("a last look at " + effects::title(name))) continue;
       const Extension without = refit_without(chosen, name);
       const Trial last = trial(without, chosen, name);
       std::string against =

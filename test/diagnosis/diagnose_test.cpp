@@ -106,6 +106,57 @@ TEST_F(Diagnose, DecidesByItsOptions) {
   EXPECT_EQ(found.options.least_deviations, 1e9);
 }
 
+/// Four loads by three gains, moved by what is known and hidden.
+std::vector<calib::SingleJoint> of_four_loads(const calib::JointModel& truth) {
+  constexpr double kLoads[] = {1.0, 1.25, 1.6, 2.0}, kGains[] = {20.0, 30.0, 45.0};
+  constexpr int kRuns = 12;
+  const bench::Bench bench = test::pd_bench(true);
+  std::mt19937 random(1);
+  std::normal_distribution<double> noise_rad(0.0, 2e-4);
+  std::vector<calib::SingleJoint> joints;
+  for (int i = 0; i < kRuns; ++i) {
+    bench::BenchRun run;
+    run.file = fmt::format("run{}.csv", i);
+    run.trajectory = "excitation";
+    run.recording = test::excitation(0);
+    run.kp = kGains[i % 3], run.kd = 0.04 * run.kp;
+    const double load = kLoads[i / 3];
+    run.load = {0.03 * load, 1.5 * load};
+    run.recording.q_rad = calib::SingleJoint(bench, run, calib::simulation_step_s(bench)).rollout(truth);
+    for (double& q_rad : run.recording.q_rad) q_rad += noise_rad(random);
+    joints.emplace_back(bench, run, calib::simulation_step_s(bench));
+  }
+  return joints;
+}
+
+TEST_F(Diagnose, LooksForWrongLoadsOnceMoreBesideWhatItFound) {
+  calib::JointModel truth;
+  truth.actuator = known();
+  truth.actuator.command.rate_limit_rad_s = 1.5;
+  std::vector<calib::SingleJoint> joints;
+  std::vector<std::string> files;
+  for (const calib::SingleJoint& joint : of_four_loads(truth)) {
+    bench::BenchRun run = joint.run();
+    if (run.load.gravity_Nm == 1.5 * 1.6) {
+      run.load.inertia_kg_m2 *= 1.3, run.load.gravity_Nm *= 1.3;
+      files.push_back(run.file);
+    }
+    joints.emplace_back(test::pd_bench(true), run, joint.step_s());
+  }
+  test::write_bench(folder_, joints);
+  const bench::Bench bench = bench::read_bench(folder_);
+  DiagnoseOptions options;
+  options.model = known();
+  EXPECT_TRUE(data_faults::examine(bench, {""}, options.model, {}, 1).faults.empty()) << "seen at once: no test";
+  const Diagnosis found = diagnose(bench, options);
+  ASSERT_EQ(found.data.faults.size(), 1U);
+  EXPECT_EQ(found.data.faults.front().kind, data_faults::Kind::kMass);
+  EXPECT_EQ(found.data.left_out, files);
+  EXPECT_NEAR(found.data.faults.front().fixes.front().load_factor, 1.0 / 1.3, 0.04);
+  ASSERT_EQ(found.causes.size(), 1U);
+  EXPECT_LT(found.after_over_noise, 1.5) << "the verdict is that of the sound runs";
+}
+
 /// The words that a diagnosis' JSON and page begin with; no line is green.
 void expect_worth(const bench::Bench& bench, const Diagnosis& found, const DiagnosedRuns& runs, work::Grade grade) {
   EXPECT_EQ(worth_of(found).grade(), grade) << worth_of(found).sentence();
