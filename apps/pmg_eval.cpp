@@ -165,7 +165,7 @@ int table1(const apps::EvalArguments& arguments) {
     table.plants.push_back(table.cases.front().plants.of(robot, static_cast<std::uint64_t>(seed)));
   if (arguments.video) sim::expect_ffmpeg();
   arguments.make_folder();
-  table.campaign = evaluation::run_campaign(table.cases, table.scenario, table.seeds, arguments.gantry,
+  table.campaign = evaluation::run_campaign(table.cases, table.in_phases(), table.seeds, arguments.gantry,
                                             Watch(arguments).supervision());
   measure_yardsticks(table, Watch(arguments).supervision());
   std::vector<std::string> failures;
@@ -241,7 +241,7 @@ int robust(const apps::EvalArguments& arguments) {
   test.cases = evaluation::robustness_cases(candidate(arguments.policies.front(), arguments), plants(arguments));
   arguments.make_folder();
   test.campaign =
-      evaluation::run_campaign(test.cases, test.scenario, test.seeds, false, Watch(arguments).supervision());
+      evaluation::run_campaign(test.cases, {test.scenario}, test.seeds, false, Watch(arguments).supervision());
   evaluate(test);
   return hand_over(arguments, test);
 }

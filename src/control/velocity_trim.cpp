@@ -7,17 +7,14 @@ namespace pmg::control {
 
 VelocityTrim::VelocityTrim(const model::RobotModel& robot, const VelocityTrimOptions& options,
                            double double_support_rate, double dt_s)
-    : options_(options),
-      double_support_rate_(double_support_rate),
-      dt_s_(dt_s),
-      odometry_(robot),
-      limits_(robot.command_limits) {
+    : options_(options), double_support_rate_(double_support_rate), dt_s_(dt_s), odometry_(robot) {
   for (std::size_t c = 0; c < kVelocityChannels; ++c)
     range_[c] = std::max(robot.command_limits.upper[c], -robot.command_limits.lower[c]);
 }
 
 void VelocityTrim::forget() noexcept {
   lagged_ = {};
+  before_ = {};
   measured_ = {};
   trim_ = {};
 }
@@ -27,7 +24,7 @@ void VelocityTrim::reset() noexcept {
   correction_ = {};
 }
 
-const std::array<double, kVelocityChannels>& VelocityTrim::step(const model::RobotState& state, const Command& user,
+const std::array<double, kVelocityChannels>& VelocityTrim::step(const model::RobotState& state,
                                                                 const Reference& reference, bool walks) noexcept {
   const Command taken = user_command(reference);
   double commanded = 0.0;
@@ -35,7 +32,7 @@ const std::array<double, kVelocityChannels>& VelocityTrim::step(const model::Rob
     if (range_[c] > 0.0) commanded += std::abs(taken.u[c]) / range_[c];
   }
   if (walks && commanded > 0.0) {
-    learn(state, user, taken, reference.contact_weight);
+    learn(state, taken, reference.contact_weight);
   } else {
     forget();
   }
@@ -49,29 +46,27 @@ const std::array<double, kVelocityChannels>& VelocityTrim::step(const model::Rob
   return correction_;
 }
 
-void VelocityTrim::learn(const model::RobotState& state, const Command& user, const Command& taken,
-                         const PerFoot<double>& weight) noexcept {
+void VelocityTrim::learn(const model::RobotState& state, const Command& taken, const PerFoot<double>& weight) noexcept {
   const auto measured = odometry_.velocity_H(state, weight);
-  const bool learns = settled(user) && measured;
+  const bool learns = settled(taken) && measured;
   for (std::size_t c = 0; c < kVelocityChannels; ++c) {
     if (measured) measured_[c] += dt_s_ / options_.lag_s * ((*measured)[c] - measured_[c]);
     if (!learns) continue;
     const double most_miss = options_.most_miss_share * range_[c], most = options_.most_share * range_[c];
-    const double missing = std::clamp(taken.u[c] - measured_[c], -most_miss, most_miss);
+    const double missing = std::clamp(lagged_[c] - measured_[c], -most_miss, most_miss);
     trim_[c] = std::clamp(trim_[c] + options_.gain_per_s * dt_s_ * missing, -most, most);
   }
 }
 
-bool VelocityTrim::settled(const Command& user) noexcept {
+bool VelocityTrim::settled(const Command& taken) noexcept {
   bool settled = true;
   double changed = 0.0;
   for (std::size_t c = 0; c < kVelocityChannels; ++c) {
     if (range_[c] == 0.0) continue;
-    const double asked = std::clamp(user.u[c], limits_.lower[c], limits_.upper[c]);
-    const double step = dt_s_ / options_.lag_s * (asked - lagged_[c]);
-    lagged_[c] += step;
-    changed += std::abs(step) / range_[c];
-    settled = settled && std::abs(asked - lagged_[c]) <= options_.settled_share * range_[c];
+    lagged_[c] += dt_s_ / options_.lag_s * (taken.u[c] - lagged_[c]);
+    changed += std::abs(taken.u[c] - before_[c]) / range_[c];
+    before_[c] = taken.u[c];
+    settled = settled && std::abs(taken.u[c] - lagged_[c]) <= options_.settled_share * range_[c];
   }
   for (double& trim : trim_) trim *= std::exp(-options_.forgets_per_range * changed);
   return settled;

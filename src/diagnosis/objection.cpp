@@ -31,10 +31,16 @@ const calib::Unknown* at_edge(const std::string& effect, const effects::Forms& f
   return nullptr;
 }
 
-/// Why none of an effect's strengths is surely another than in the model without it, or "".
+/// Why none of an effect's strengths is surely another than in the model without it, nor all together, or "". Of
+/// several strengths the folds may disagree how much belongs to which: whether they need any is said by what they
+/// predict.
 std::string maybe_neutral(const std::vector<std::string>& strengths, const effects::NestedModel& fitted,
-                          const calib::JointModel& neutral, const std::vector<evidence::Interval>& intervals) {
+                          const calib::JointModel& neutral, const std::vector<fitting::Fold>& folds,
+                          double noise_squares, const effects::IntervalOptions& options) {
+  const std::vector<evidence::Interval> intervals = parameter_intervals(fitted, folds, noise_squares, options);
   std::string why;
+  std::vector<Eigen::Index> coordinates;
+  std::vector<double> none_at;
   for (std::size_t i = 0; i < intervals.size(); ++i) {
     const calib::Unknown& u = fitted.unknowns[i];
     if (!effects::contains(strengths, u.name)) continue;
@@ -42,8 +48,14 @@ std::string maybe_neutral(const std::vector<std::string>& strengths, const effec
     const double none = std::clamp(calib::value(neutral, u.name), u.lower, u.upper);
     if (none < x.low || none > x.high) return "";
     why = fmt::format("{} may as well be {:.3g}: {:.3g} ({:.3g} to {:.3g})", u.name, none, x.value, x.low, x.high);
+    coordinates.push_back(static_cast<Eigen::Index>(i));
+    none_at.push_back(u.coordinate(none));
   }
-  return why;
+  constexpr double kUnlikely = 0.05;
+  const Eigen::Map<const Eigen::VectorXd> none(none_at.data(), std::ssize(none_at));
+  const bool sure =
+      coordinates.size() > 1 && effects::chance_of(fitted, coordinates, none, noise_squares, options) < kUnlikely;
+  return sure ? "" : why;
 }
 
 }  // namespace
@@ -130,8 +142,7 @@ std::string EffectSearch::unsure(const std::string& effect, const effects::Forms
   effects::NestedModel known = fitted;  // without the priors gains, inertia and friction may scale together
   if (known.prior_weight == 0.0) known.prior_weight = prior_weight(known);
   return maybe_neutral(effects::strengths(effect, forms), known, base_.model,
-                       parameter_intervals(known, folds != nullptr ? *folds : compare_.folds(), limits_.noise_squares,
-                                           options_.intervals));
+                       folds != nullptr ? *folds : compare_.folds(), limits_.noise_squares, options_.intervals);
 }
 
 }  // namespace pmg::diagnosis

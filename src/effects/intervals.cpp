@@ -51,19 +51,22 @@ evidence::Interval percentiles(double value, const std::vector<double>& drawn) {
   return {value, fitting::quantile(drawn, 0.025), fitting::quantile(drawn, 0.975)};
 }
 
-}  // namespace
+/// Of the coordinates that the runs show and that are inside their ranges: cluster-robust, and the sum of three of
+/// coordinate_deviations().
+struct SumOfThree {
+  fitting::Covariance robust;
+  Eigen::MatrixXd sum;
+};
 
-Eigen::VectorXd coordinate_deviations(const NestedModel& model, const std::vector<fitting::Fold>& folds,
-                                      double noise_squares, const IntervalOptions& options) {
-  const Eigen::Index count = model.coordinates.size();
+SumOfThree sum_of_three(const NestedModel& model, double noise_squares, const IntervalOptions& options) {
   const Eigen::MatrixXd information = fitting::information(model);
-  const std::vector<Eigen::Index> seen = seen_inside(model, information);
-  const auto [of, inverse, robust] = fitting::cluster_robust_covariance(model, seen);
-  Eigen::MatrixXd covariance = robust;
+  SumOfThree found{fitting::cluster_robust_covariance(model, seen_inside(model, information)), {}};
+  const auto& [seen, inverse, robust] = found.robust;
+  found.sum = robust;
   double squares = 0.0, samples = 0.0;
   for (const fitting::NormalEquations& block : model.blocks) squares += block.squares, samples += block.samples;
-  covariance += options.form_of_squares * std::max(0.0, squares - samples * noise_squares) * inverse;
-  for (Eigen::Index i = 0; i < count; ++i) {
+  found.sum += options.form_of_squares * std::max(0.0, squares - samples * noise_squares) * inverse;
+  for (Eigen::Index i = 0; i < model.coordinates.size(); ++i) {
     const bool fitted = std::find(seen.begin(), seen.end(), i) != seen.end();
     if (fitted || !(information(i, i) > fitting::kUnseen_rad2)) continue;
     const calib::Unknown& u = model.unknowns[static_cast<std::size_t>(i)];
@@ -71,15 +74,43 @@ Eigen::VectorXd coordinate_deviations(const NestedModel& model, const std::vecto
     if (u.upper - u.lower > options.widest_tolerance * u.upper)
       continue;  // an effect's parameter at its bound, not one known to a tolerance
     const Eigen::VectorXd pull = inverse * information(seen, i) * (range / std::sqrt(12.0));
-    covariance += pull * pull.transpose();
+    found.sum += pull * pull.transpose();
   }
+  return found;
+}
+
+}  // namespace
+
+Eigen::VectorXd coordinate_deviations(const NestedModel& model, const std::vector<fitting::Fold>& folds,
+                                      double noise_squares, const IntervalOptions& options) {
+  const SumOfThree known = sum_of_three(model, noise_squares, options);
   const Eigen::VectorXd moved = fitting::jackknife_variance(model, folds);
-  Eigen::VectorXd deviations = Eigen::VectorXd::Zero(count);
-  for (Eigen::Index s = 0; s < std::ssize(seen); ++s) {
-    const Eigen::Index i = seen[static_cast<std::size_t>(s)];
-    deviations[i] = std::sqrt(std::max({0.0, covariance(s, s), moved[i]}));
+  Eigen::VectorXd deviations = Eigen::VectorXd::Zero(model.coordinates.size());
+  for (Eigen::Index s = 0; s < std::ssize(known.robust.of); ++s) {
+    const Eigen::Index i = known.robust.of[static_cast<std::size_t>(s)];
+    deviations[i] = std::sqrt(std::max({0.0, known.sum(s, s), moved[i]}));
   }
   return deviations;
+}
+
+double chance_of(const NestedModel& model, const std::vector<Eigen::Index>& coordinates, const Eigen::VectorXd& at,
+                 double noise_squares, const IntervalOptions& options) {
+  const SumOfThree known = sum_of_three(model, noise_squares, options);
+  const std::vector<Eigen::Index>& seen = known.robust.of;
+  std::vector<Eigen::Index> of;  // places in the covariance
+  std::vector<double> away;
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    const auto place = std::find(seen.begin(), seen.end(), coordinates[i]);
+    if (place == seen.end()) continue;
+    of.push_back(place - seen.begin());
+    away.push_back(model.coordinates[coordinates[i]] - at[static_cast<Eigen::Index>(i)]);
+  }
+  if (of.empty()) return 1.0;
+  const Eigen::VectorXd d = Eigen::Map<const Eigen::VectorXd>(away.data(), std::ssize(away));
+  const Eigen::VectorXd scaled = fitting::solved(known.sum(of, of), d);
+  const Eigen::VectorXd freedom = fitting::effective_blocks(model, known.robust);
+  const auto count = static_cast<double>(of.size());
+  return fitting::f_tail(d.dot(scaled) / count, count, freedom(of).minCoeff());
 }
 
 std::vector<evidence::Interval> parameter_intervals(const NestedModel& model, const std::vector<fitting::Fold>& folds,

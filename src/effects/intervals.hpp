@@ -45,6 +45,14 @@ struct IntervalOptions {
 Eigen::VectorXd coordinate_deviations(const NestedModel& model, const std::vector<fitting::Fold>& folds,
                                       double noise_squares, const IntervalOptions& options = {});
 
+/// (linearised model, some of its coordinates, other values of these, mean square of the noise [rad^2]) => (probability
+/// that the fit would end so far from them by chance): F of the distance by the sum of three and its correlations, with
+/// Kish's effective number of blocks (H. Hotelling, Annals of Mathematical Statistics 2:360, 1931). Two numbers may
+/// each be unsure where one does as well as the other, and both together sure. Those at the bound of their range don't
+/// count; 1 if none is left.
+double chance_of(const NestedModel& model, const std::vector<Eigen::Index>& coordinates, const Eigen::VectorXd& at,
+                 double noise_squares, const IntervalOptions& options = {});
+
 /// (linearised model, folds, mean square of the noise [rad^2]) => (95 % intervals of the unknowns, in their units and
 /// order): x +- t deviations, on to where an exact integrator would move it, then 3 % of the value to each side. t is
 /// Student's, with the effective number of blocks as degrees of freedom: 1.96 for many, 2.57 for five.

@@ -52,8 +52,8 @@ work::Worth whole(const CampaignRuns& campaign) {
   return {work::Grade::kInterrupted, fmt::format("{} of {} runs are complete", complete, all)};
 }
 
-CampaignRuns run_campaign(const std::vector<Case>& cases, const sil::Scenario& scenario, int seeds, bool gantry,
-                          const Supervision& supervision) {
+CampaignRuns run_campaign(const std::vector<Case>& cases, const std::vector<sil::Scenario>& scenarios, int seeds,
+                          bool gantry, const Supervision& supervision) {
   CampaignRuns campaign;
   campaign.runs.assign(cases.size(), std::vector<TrialResult>(static_cast<std::size_t>(seeds)));
   campaign.courses.resize(cases.size());
@@ -70,7 +70,8 @@ CampaignRuns run_campaign(const std::vector<Case>& cases, const sil::Scenario& s
         return true;
       };
     }
-    campaign.runs[c][seed] = run_trial(cases[c].candidate, scenario, cases[c].plants.of(robots[c], seed + 1), options);
+    campaign.runs[c][seed] = run_trial(cases[c].candidate, scenarios[seed % scenarios.size()],
+                                       cases[c].plants.of(robots[c], seed + 1), options);
   });
   for (const auto& runs : campaign.runs) {
     for (const TrialResult& run : runs) campaign.complete = campaign.complete && run.complete;

@@ -46,9 +46,9 @@ struct CampaignRuns {
 /// Interrupted, with how many trials are complete; otherwise it holds.
 work::Worth whole(const CampaignRuns& campaign);
 
-/// Seeds 1 to `seeds`. The result doesn't depend on the number of jobs.
-CampaignRuns run_campaign(const std::vector<Case>& cases, const sil::Scenario& scenario, int seeds, bool gantry,
-                          const Supervision& supervision);
+/// Seeds 1 to `seeds`, which take the scenarios in turn. The result doesn't depend on the number of jobs.
+CampaignRuns run_campaign(const std::vector<Case>& cases, const std::vector<sil::Scenario>& scenarios, int seeds,
+                          bool gantry, const Supervision& supervision);
 
 /// Films a case's first seed, until the supervision interrupts. Returns the film's error in one line; empty: none.
 std::string film_case(const Case& filmed, const sil::Scenario& scenario, const std::filesystem::path& file,

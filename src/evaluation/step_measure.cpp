@@ -16,11 +16,14 @@ Errors over(const Errors& sums, double seconds) {
 
 }  // namespace
 
-void StepMeasure::add(const control::TickResult& result, const model::GroundTruth& truth, bool hoisted,
+void StepMeasure::add(double time_s, const control::TickResult& result, const model::GroundTruth& truth, bool hoisted,
                       const sil::ScenarioStep& step) {
-  if (&step != step_) close_step();
-  step_ = &step;
-  measure_.add(result, truth, hoisted, step.command);
+  const bool judged =
+      time_s < step.start_s + step.duration_s - step.unjudged_s - 0.5 * control::ControlCycle::kPeriod_s;
+  if (!judged || &step != step_) close_step();
+  step_ = judged ? &step : nullptr;
+  measure_.add(result, truth, hoisted, step.command);  // averages over a gait period go on
+  if (!judged) before_ = total();
 }
 
 void StepMeasure::count_as_fallen(double from_s, const control::TickResult& result, model::GroundTruth last) {
@@ -28,14 +31,14 @@ void StepMeasure::count_as_fallen(double from_s, const control::TickResult& resu
   control::TickResult held = result;
   if (held.mode != control::Mode::kStand) held.mode = control::Mode::kWalk;
   for (double time_s = from_s; time_s < scenario_.duration_s() - 1e-9; time_s += control::ControlCycle::kPeriod_s) {
-    add(held, last, false, scenario_.at(time_s));
+    add(time_s, held, last, false, scenario_.at(time_s));
   }
 }
 
 void StepMeasure::report(TrialResult& result) {
   close_step();
   step_ = nullptr;
-  result.judged_s = measure_.outcome().tracking.followed_s;
+  result.judged_s = within_.seconds + beyond_.seconds;
   result.errors = over(within_.errors, within_.seconds);
   result.errors_raw = over(within_.raw, within_.seconds);
   if (beyond_.seconds > 0.0) result.errors_beyond_reach = over(beyond_.errors, beyond_.seconds);

@@ -16,7 +16,7 @@ class StepMeasure {
   StepMeasure(const model::RobotModel& robot, const sil::Scenario& scenario)
       : measure_(robot.standing_height_m), scenario_(scenario) {}
 
-  void add(const control::TickResult& result, const model::GroundTruth& truth, bool hoisted,
+  void add(double time_s, const control::TickResult& result, const model::GroundTruth& truth, bool hoisted,
            const sil::ScenarioStep& step);
 
   /// Completes a run whose simulation diverged: for the rest of the scenario the robot counts as fallen.

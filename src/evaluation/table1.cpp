@@ -108,10 +108,14 @@ Comparison compare(const Case& policy, const std::vector<TrialResult>& runs, con
 }
 
 void measure_yardsticks(Table1& table, const Supervision& supervision) {
-  table.yardsticks.assign(table.cases.size(), {});
-  for_each_piece(table.cases.size(), supervision, [&](std::size_t c) {
-    table.yardsticks[c] = yardstick(table.cases[c].candidate, table.scenario, supervision.progress);
+  const std::vector<sil::Scenario> scenarios = table.in_phases();
+  std::vector<std::vector<Yardstick>> all(table.cases.size(), std::vector<Yardstick>(scenarios.size()));
+  for_each_piece(table.cases.size() * scenarios.size(), supervision, [&](std::size_t piece) {
+    const std::size_t c = piece / scenarios.size(), phase = piece % scenarios.size();
+    all[c][phase] = yardstick(table.cases[c].candidate, scenarios[phase], supervision.progress);
   });
+  table.yardsticks.clear();
+  for (const std::vector<Yardstick>& of_case : all) table.yardsticks.push_back(mean(of_case));
   for (const Yardstick& one : table.yardsticks)
     table.campaign.complete = table.campaign.complete && one.nothing.complete;
 }
@@ -138,6 +142,7 @@ ordered_json to_json(const Table1& table) {
       {"duration_s", table.scenario.duration_s()},
       {"variation", table.ranges_file.empty() ? ordered_json(nullptr) : ordered_json(table.ranges_file)},
       {"seeds", table.seeds},
+      {"gait_phases", kPhases},
       {"limits",
        {{"policy", table.cases[table.judged].name}, {"of", table.gentle() ? "errors" : "share"}, {"falls", 0}}}};
   for (std::size_t e = 0; e < kErrors; ++e) {

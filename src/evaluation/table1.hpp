@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "evaluation/campaign.hpp"
+#include "evaluation/phases.hpp"
 #include "evaluation/yardstick.hpp"
 #include "pages/page.hpp"
 
@@ -20,6 +21,8 @@ inline constexpr const char* kGentleScenario = "table1";
 
 /// Limits on every other sequence, as shares between a perfect follower and doing nothing (share_left).
 inline constexpr Errors kShareLimits = {0.15, 0.15, 0.20, 0.15, 0.15};
+
+inline constexpr int kPhases = 4;  ///< of the gait, in which the seeds' commands change
 
 /// The paper's figures for this kind of policy (Table I); nullopt for other names.
 std::optional<Errors> published_errors(const std::string& policy);
@@ -34,6 +37,8 @@ struct Comparison {
 struct Table1 {
   std::string robot, scenario_file, ranges_file;  ///< as the user named them; ranges_file empty: the robot model itself
   sil::Scenario scenario;
+  /// The seeds take the gait's phases in turn (phases.hpp).
+  std::vector<sil::Scenario> in_phases() const { return evaluation::in_phases(scenario, kPhases); }
   std::vector<Case> cases;
   int seeds = 0;
   CampaignRuns campaign;
@@ -56,7 +61,7 @@ struct Table1 {
 
 work::Worth worth_of(const Table1& table);
 
-/// Fills yardsticks by one run per case with the robot on the gantry.
+/// Fills yardsticks by one run per case and gait phase with the robot on the gantry: their means over the phases.
 void measure_yardsticks(Table1& table, const Supervision& supervision);
 
 /// Fills summaries, comparisons and judged from cases, campaign and yardsticks.

@@ -224,9 +224,12 @@ pages::Page page_of(const Table1& table) {
       "are Student's, over seeds. Doing nothing is standing upright whatever is asked; a perfect follower does at once "
       "what "
       "ranges and rates let through; both pass through the same averaging. The share left is (error - follower) / "
-      "(nothing - follower). Steps beyond the clips' reach are counted apart, against the user's command.",
+      "(nothing - follower). Steps beyond the clips' reach are counted apart, against the user's command. The runs "
+      "take "
+      "{} phases of the gait in turn in which the commands change: walks begun from rest last up to a second longer, "
+      "which isn't judged.",
       table.seeds, table.scenario.duration_s(), table.scenario_file,
-      table.ranges_file.empty() ? "as the model says" : table.ranges_file));
+      table.ranges_file.empty() ? "as the model says" : table.ranges_file, kPhases));
   if (!table.films.empty()) {
     std::string names;
     for (const std::string& film : table.films) names += (names.empty() ? "" : ", ") + film;

@@ -31,7 +31,7 @@ TrialResult run_trial(const Candidate& candidate, const sil::Scenario& scenario,
   double next_s = 0.0;
   lockstep.after_tick = [&](const sil::RunProgress& now) {
     truth = simulated.truth();
-    measure.add(now.result, truth, options.gantry, now.step);
+    measure.add(now.time_s, now.result, truth, options.gantry, now.step);
     next_s = now.time_s + control::ControlCycle::kPeriod_s;
     if (options.observer) ended = !options.observer(now, simulated);
   };

@@ -50,8 +50,8 @@ Yardstick yardstick(const Candidate& candidate, const sil::Scenario& scenario, c
     const Command& limited = limiter.step(asked, double_support, control::ControlCycle::kPeriod_s);
     const PerFoot<double>& weight = now.result.reference.contact_weight;
     double_support = weight[kLeft] * weight[kRight];
-    nothing.add(now.result, still.move({}), false, now.step);
-    follower.add(now.result, moving.move(limited), false, now.step);
+    nothing.add(now.time_s, now.result, still.move({}), false, now.step);
+    follower.add(now.time_s, now.result, moving.move(limited), false, now.step);
     return true;
   };
   Candidate hanging = candidate;
@@ -62,6 +62,23 @@ Yardstick yardstick(const Candidate& candidate, const sil::Scenario& scenario, c
   follower.report(result.follower);
   result.nothing.complete = result.follower.complete = hung.complete;
   return result;
+}
+
+Yardstick mean(const std::vector<Yardstick>& all) {
+  const auto mean_of = [&](TrialResult Yardstick::*end) {
+    TrialResult mean;
+    mean.complete = true;
+    for (const Yardstick& one : all) {
+      const TrialResult& run = one.*end;
+      mean.complete = mean.complete && run.complete;
+      for (std::size_t e = 0; e < kErrors; ++e) {
+        mean.errors[e] += run.errors[e] / static_cast<double>(all.size());
+        mean.errors_raw[e] += run.errors_raw[e] / static_cast<double>(all.size());
+      }
+    }
+    return mean;
+  };
+  return {.nothing = mean_of(&Yardstick::nothing), .follower = mean_of(&Yardstick::follower)};
 }
 
 Errors share_left(const Errors& errors, const Yardstick& between) {

@@ -2,6 +2,8 @@
 // perfectly. Both errors are averaged as a simulated robot's.
 #pragma once
 
+#include <vector>
+
 #include "evaluation/trial.hpp"
 
 namespace pmg::evaluation {
@@ -16,6 +18,9 @@ struct Yardstick {
 /// support, stops within their time). The clips' common reach does not limit it, so a blend that cuts a command counts
 /// against the policy.
 Yardstick yardstick(const Candidate& candidate, const sil::Scenario& scenario, const work::Progress& progress);
+
+/// Of runs of one course in several gait phases: the means of their errors, complete if all are.
+Yardstick mean(const std::vector<Yardstick>& all);
 
 /// (error - follower) / (nothing - follower): 0 for a perfect follower, 1 for a robot that does nothing. NaN where the
 /// scenario commands nothing in a channel.

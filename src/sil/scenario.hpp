@@ -22,6 +22,7 @@ struct ScenarioStep {
   bool hoist_without_policy = false;
   bool steady_without_policy = false;  ///< or steadies it; hoisting goes before
   bool beyond_reach = false;           ///< asks for more than clips give together: evaluations report it apart
+  double unjudged_s = 0.0;  ///< of duration_s, at its end: evaluations don't judge it (evaluation/phases.hpp)
   Support support_without_policy() const {
     return hoist_without_policy ? Support::kLifted : steady_without_policy ? Support::kSteady : Support::kNone;
   }

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "control/fixtures.hpp"
 #include "gco/motion_composition.hpp"
 
@@ -91,7 +93,7 @@ Trimmed lame(VelocityTrim& trim, PerfectWalker& walker, const Command& user, dou
     model::RobotState state = walker.state();
     state.dq *= share;
     state.gyro_rad_s *= share;
-    last.correction = trim.step(state, user, walker.reference(), true);
+    last.correction = trim.step(state, walker.reference(), true);
     walker.step(user, last.correction);
     mean += share * walker.does()[kVx];
   }
@@ -115,6 +117,18 @@ TEST(VelocityTrim, ARobotThatDoesAFifthTooLittleComesToDoWhatItIsAskedFor) {
   EXPECT_LT(lame(none, untrimmed, user, 0.85, 4.0).does[kVx], 0.36);
 }
 
+TEST(VelocityTrim, ARobotThatTakesItsTimeIsNotTakenForOneThatDoesTooLittle) {
+  VelocityTrim trim = trim_of({});
+  PerfectWalker walker;
+  const Command user{{0.7}};
+  double largest = 0.0;
+  for (int k = 0; k < 500; ++k) {
+    const double share = 1.0 - std::exp(-k * test::kTick_s / 0.5);
+    largest = std::max(largest, std::abs(lame(trim, walker, user, share, test::kTick_s).correction[kVx]));
+  }
+  EXPECT_LT(largest, 0.01);
+}
+
 TEST(VelocityTrim, IsBoundedAndOfWhatIsNoLongerAskedNothingIsKept) {
   VelocityTrim trim = trim_of({});
   PerfectWalker walker;
@@ -134,7 +148,7 @@ TEST(VelocityTrim, FadesWithoutAJumpWhereNoPolicyWalks) {
   double before = lame(trim, walker, {{0.4}}, 0.8, 8.0).correction[kVx];
   EXPECT_GT(before, 0.03);
   for (int k = 0; k < 25; ++k) {
-    const double now = trim.step(walker.state(), {{0.4}}, walker.reference(), false)[kVx];
+    const double now = trim.step(walker.state(), walker.reference(), false)[kVx];
     EXPECT_LE(std::abs(now - before), 0.8 * test::kTick_s + 1e-12);
     before = now;
   }

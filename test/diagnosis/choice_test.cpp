@@ -7,6 +7,7 @@
 #include "calib/unknown.hpp"
 #include "diagnosis/effect_search.hpp"
 #include "diagnosis/rules_fixture.hpp"
+#include "effects/alike_numbers.hpp"
 #include "effects/catalogue.hpp"
 #include "effects/folds.hpp"
 
@@ -90,6 +91,16 @@ TEST_F(Judged, AnEffectWhoseIntervalContainsNeutralIsNotTaken) {
   const EffectSearch at = search();
   EXPECT_NE(at.objection(convincing("offset", extension(at, "offset", 0.001))).find("may as well be 0"),
             std::string::npos);
+}
+
+TEST_F(Judged, TwoStrengthsThatDoTheSameAreSureTogetherOrNotAtAll) {
+  const EffectSearch at = search();
+  Extension alike = extension(at, "load_friction", 0.1, 0);
+  alike.fitted = test::with_alike_numbers(alike.fitted, alike.fitted.blocks.size());
+  alike.fitted.coordinates = Eigen::Vector2d(0.5, 0.5);
+  EXPECT_EQ(at.unsure("load_friction", {}, alike.fitted), "") << "each alone may be none, their sum is not";
+  alike.fitted.coordinates = Eigen::Vector2d(0.02, 0.02);
+  EXPECT_NE(at.unsure("load_friction", {}, alike.fitted).find("may as well be 0"), std::string::npos);
 }
 
 TEST_F(Judged, AnEffectWhoseStrengthEndsAtTheEdgeOfItsRangeIsNotTaken) {

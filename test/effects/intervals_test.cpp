@@ -8,6 +8,7 @@
 #include "calib/step_choice.hpp"
 #include "calib/synthetic_bench.hpp"
 #include "calib/unknown.hpp"
+#include "effects/alike_numbers.hpp"
 #include "effects/folds.hpp"
 #include "fitting/covariance.hpp"
 #include "fitting/f_distribution.hpp"
@@ -106,6 +107,26 @@ TEST(Intervals, AreStudentsWithTheBlocksThatDetermineTheNumber) {
   const evidence::Interval found = of.interval(fitted);
   const double deviation = coordinate_deviations(fitted, folds(of.fit), kNoise_rad2)[0];
   EXPECT_NEAR(found.high - found.value, fitting::student95(freedom) * deviation + 0.03 * found.value, 1e-9);
+}
+
+TEST(Chance, OfTwoNumbersThatDoTheSameBothMayBeUnsureAndTheirSumSure) {
+  const bench::Bench bench = test::pd_bench(true);
+  const std::vector<calib::SingleJoint> runs = test::record(bench, dry_joint(), 1, kNoise_rad);
+  NestedModel model;
+  for (const char* name : {"friction.load_driving", "friction.load_backdriving"})
+    model.unknowns.push_back(unknown(name, bench, scale_of(bench, runs, dry_joint())));
+  model.ranges = calib::ranges(model.unknowns);
+  model.coordinates = Eigen::Vector2d(0.3, 0.3);
+  model = test::with_alike_numbers(model, 100);
+  const Eigen::VectorXd none = Eigen::Vector2d::Zero();
+  for (const evidence::Interval& each : parameter_intervals(model, {}, 1.0)) EXPECT_LE(each.low, 0.0);
+  EXPECT_LT(chance_of(model, {0, 1}, none, 1.0), 1e-4);
+  EXPECT_GT(chance_of(model, {1}, none.head(1), 1.0), 0.2) << "one alone may be none";
+  EXPECT_GT(chance_of(model, {0, 1}, Eigen::Vector2d(0.9, -0.3), 1.0), 0.2) << "their sum is what is sure";
+  model.coordinates = Eigen::Vector2d(0.03, 0.03);
+  EXPECT_GT(chance_of(model, {0, 1}, none, 1.0), 0.2);
+  model.coordinates = none;
+  EXPECT_EQ(chance_of(model, {0, 1}, none, 1.0), 1.0) << "both at the end of their ranges";
 }
 
 TEST(StepShift, ReachesFromACoarseStepsNumberToTheTruth) {

@@ -128,7 +128,7 @@ TEST(AnotherPersonsStyle, WalksTheTourOnRobotsThatDiffer) {
   Plants plants;
   plants.ranges = sim::load_variation_ranges("training/randomization.yaml");
   const CampaignRuns campaign =
-      run_campaign({{.name = "cmu69", .candidate = another_person(), .plants = plants}}, tour, 4, false, {.jobs = 2});
+      run_campaign({{.name = "cmu69", .candidate = another_person(), .plants = plants}}, {tour}, 4, false, {.jobs = 2});
   ASSERT_EQ(campaign.runs[0].size(), 4U);
   for (const TrialResult& result : campaign.runs[0]) EXPECT_TRUE(result.survived()) << result.fell_at_s;
 }
@@ -136,7 +136,7 @@ TEST(AnotherPersonsStyle, WalksTheTourOnRobotsThatDiffer) {
 TEST(Campaign, ASeedIsTheSameRobotForEveryCaseAndResultsDontDependOnJobs) {
   const std::vector<Case> cases = {{.name = "a", .candidate = without_policy(), .plants = varied()},
                                    {.name = "b", .candidate = without_policy(), .plants = varied()}};
-  const auto run = [&](int jobs) { return run_campaign(cases, standing(0.6), 3, false, {.jobs = jobs}); };
+  const auto run = [&](int jobs) { return run_campaign(cases, {standing(0.6)}, 3, false, {.jobs = jobs}); };
   const CampaignRuns alone = run(1), together = run(3);
   ASSERT_TRUE(alone.complete);
   for (std::size_t seed = 0; seed < 3; ++seed) {

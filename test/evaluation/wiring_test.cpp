@@ -104,7 +104,7 @@ TEST(Wiring, EveryConditionOfRobustnessReachesTheSimulatedWorld) {
 
   // And the runs themselves: each condition stands differently from the one before it.
   const sil::Scenario standing{.name = "standing", .steps = {step(0.0, 1.0, control::Mode::kStand, 0.0)}};
-  const CampaignRuns runs = run_campaign(cases, standing, 1, false, {.jobs = 2});
+  const CampaignRuns runs = run_campaign(cases, {standing}, 1, false, {.jobs = 2});
   for (std::size_t c = 1; c < cases.size(); ++c) {
     EXPECT_TRUE(runs.runs[c][0].complete) << cases[c].name;
     EXPECT_NE(runs.runs[c][0].errors, runs.runs[0][0].errors) << cases[c].name;

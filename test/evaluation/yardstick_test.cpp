@@ -111,7 +111,8 @@ TEST(StepMeasure, RawErrorsAndStepsBeyondReachAreKeptApart) {
   control::TickResult result;
   result.mode = control::Mode::kWalk;
   for (int tick = 0; tick < 2000; ++tick) {
-    measure.add(result, going(0.3, tick, robot.standing_height_m), false, scenario.at(tick * kTick_s + 1e-6));
+    const double time_s = tick * kTick_s;
+    measure.add(time_s, result, going(0.3, tick, robot.standing_height_m), false, scenario.at(time_s + 1e-6));
   }
   TrialResult report;
   measure.report(report);
@@ -125,6 +126,64 @@ TEST(StepMeasure, RawErrorsAndStepsBeyondReachAreKeptApart) {
   EXPECT_NEAR((*report.errors_beyond_reach)[kLinVel], 0.5 * (1.0 - 0.5 * 0.1), 0.01) << "but for the averaging's start";
   ASSERT_EQ(report.step_errors.size(), 2U);
   EXPECT_EQ(report.step_errors[1][kLinVel], (*report.errors_beyond_reach)[kLinVel]);
+}
+
+TEST(Phases, EachWalkBeginsTheNextStepLaterAndTheCourseIsTheSame) {
+  const sil::Scenario course{.name = "hand",
+                             .steps = {scenario_step(0.0, 2.0, control::Mode::kStand, {}),
+                                       scenario_step(2.0, 4.0, control::Mode::kWalk, of(kVx, 0.3)),
+                                       scenario_step(6.0, 4.0, control::Mode::kWalk, of(kVx, -0.3)),
+                                       scenario_step(10.0, 4.0, control::Mode::kWalk, of(kPitch, 0.3)),
+                                       scenario_step(14.0, 4.0, control::Mode::kWalk, of(kOmega, 0.3))}};
+  const std::vector<sil::Scenario> all = in_phases(course, 4);
+  ASSERT_EQ(all.size(), 4U);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const double later_s = 0.25 * static_cast<double>(k);
+    const std::vector<sil::ScenarioStep>& steps = all[k].steps;
+    ASSERT_EQ(steps.size(), course.steps.size());
+    for (std::size_t s = 0; s < steps.size(); ++s) {
+      EXPECT_EQ(steps[s].command.u, course.steps[s].command.u);
+      EXPECT_DOUBLE_EQ(steps[s].duration_s - steps[s].unjudged_s, course.steps[s].duration_s);
+      EXPECT_DOUBLE_EQ(steps[s].unjudged_s, s == 1 || s == 4 ? later_s : 0.0) << s;
+    }
+    EXPECT_DOUBLE_EQ(steps[2].start_s, 6.0 + later_s);
+    EXPECT_DOUBLE_EQ(steps[4].start_s, 14.0 + later_s);
+  }
+}
+
+TEST(Phases, WhatAStepLastsLongerIsNotJudged) {
+  const model::RobotModel robot = model::load_robot(model::find_robot("z1"));
+  sil::Scenario scenario{.name = "hand",
+                         .steps = {scenario_step(0.0, 12.0, control::Mode::kWalk, of(kVx, 0.3)),
+                                   scenario_step(12.0, 10.0, control::Mode::kWalk, of(kVx, 0.3))}};
+  scenario.steps[0].unjudged_s = 2.0;
+  StepMeasure measure(robot, scenario);
+  control::TickResult result;
+  result.mode = control::Mode::kWalk;
+  for (int tick = 0; tick < 2200; ++tick) {
+    const double time_s = tick * kTick_s;
+    const double speed_m_s = time_s > 9.995 && time_s < 11.5 ? 5.0 : 0.3;  // until a period before the next step
+    measure.add(time_s, result, going(speed_m_s, tick, robot.standing_height_m), false, scenario.at(time_s + 1e-6));
+  }
+  TrialResult report;
+  measure.report(report);
+  EXPECT_NEAR(report.judged_s, 20.0, 1e-9);
+  EXPECT_NEAR(report.errors_raw[kLinVel], 0.1, 1e-9);
+  ASSERT_EQ(report.step_errors.size(), 2U);
+  EXPECT_NEAR(report.step_errors[0][kPitchError], report.step_errors[1][kPitchError], 0.01);
+}
+
+TEST(Phases, TheYardstickIsTheMeanOverThem) {
+  Yardstick first, second;
+  first.nothing.errors = {0.4};
+  second.nothing.errors = {0.2};
+  first.follower.errors_raw = {0.1};
+  first.nothing.complete = second.nothing.complete = first.follower.complete = true;
+  const Yardstick both = mean({first, second});
+  EXPECT_DOUBLE_EQ(both.nothing.errors[kLinVel], 0.3);
+  EXPECT_DOUBLE_EQ(both.follower.errors_raw[kLinVel], 0.05);
+  EXPECT_TRUE(both.nothing.complete);
+  EXPECT_FALSE(both.follower.complete);
 }
 
 TEST(Table1, OffTheGentleSequenceTheShareLeftIsJudged) {
