@@ -13,7 +13,7 @@ constexpr double kAdultLeg_m = 0.85;  ///< where a recording has no whole leg
 
 /// One foot's motion on a fine grid of time.
 struct FootMotion {
-  double rate_hz;
+  double rate_hz = 0.0;
   std::vector<double> slower_m_s;  ///< speed of the slower of heel and toe
   std::vector<double> middle_m_s;  ///< speed of the middle of heel and toe
   std::vector<double> height_m;    ///< of the point that is closer to its own lowest height

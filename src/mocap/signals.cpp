@@ -52,8 +52,8 @@ Positions finer(const Positions& samples, int factor) {
   Positions result;
   for (std::size_t i = 0; i + 1 < samples.size(); ++i) {
     const auto n = static_cast<std::ptrdiff_t>(i);
-    const Eigen::Vector3d a = reflected(samples, n - 1), b = samples[i], c = samples[i + 1],
-                          d = reflected(samples, n + 2);
+    const Eigen::Vector3d a = reflected(samples, n - 1), d = reflected(samples, n + 2);
+    const Eigen::Vector3d &b = samples[i], &c = samples[i + 1];
     for (int k = 0; k < factor; ++k) {
       const double t = static_cast<double>(k) / factor;
       result.emplace_back(b + 0.5 * t * (c - a + t * (2.0 * a - 5.0 * b + 4.0 * c - d + t * (3.0 * (b - c) + d - a))));

@@ -69,7 +69,7 @@ std::string zip_content(const Bytes& bytes, const ZipEntry& entry) {
       bytes.fail(entry.directory_at, "promises more than deflate can hold", "an npz file");
     content.resize(entry.unpacked);
     z_stream stream{};
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
+    stream.next_in = reinterpret_cast<const Bytef*>(packed.data());
     stream.avail_in = static_cast<uInt>(packed.size());
     stream.next_out = reinterpret_cast<Bytef*>(content.data());
     stream.avail_out = static_cast<uInt>(content.size());

@@ -19,15 +19,16 @@ class OddRuns : public testing::Test {
  protected:
   void record(int repeats) {
     for (int number = 0; number < 8; ++number) {
+      const int gain = number / 2;
       for (int repeat = 0; repeat < repeats; ++repeat) {
         BenchRun run;
         run.trajectory = std::to_string(number % 2);
-        run.kp = 10.0 + number / 2;
+        run.kp = 10.0 + gain;
         run.repeat = repeat;
-        run.file = run.trajectory + "_kp" + std::to_string(number / 2) + "_r" + std::to_string(repeat);
+        run.file = run.trajectory + "_kp" + std::to_string(gain) + "_r" + std::to_string(repeat);
         run.recording = test::excitation(number % 2);
         for (std::size_t k = 0; k < run.recording.q_rad.size(); ++k)
-          run.recording.q_rad[k] = (0.90 + 0.02 * (number / 2)) * run.recording.q_cmd_rad[k] + noise();
+          run.recording.q_rad[k] = (0.90 + 0.02 * gain) * run.recording.q_cmd_rad[k] + noise();
         runs_.push_back(run);
       }
     }
