@@ -353,7 +353,7 @@ void Tick::excite_joint(model::JointCommand& command) noexcept {
 faults::Fault Tick::make_reference(const model::RobotState& state) noexcept {
   const io::Lap generator(stopwatch_);
   const bool walks = supervisor_.mode() == Mode::kWalk && runs_policy(result_.maker);
-  if (velocity_trim_) motion_.set_correction(velocity_trim_->step(state, motion_.reference(), walks));
+  if (velocity_trim_) motion_.set_correction(velocity_trim_->step(state, result_.user, motion_.reference(), walks));
   result_.reference = motion_.advance(result_.user, dt_s_);
   if (spoiler_ != nullptr) spoiler_->spoil(result_.reference);
   result_.times.generator_ns = generator.elapsed_ns();

@@ -7,7 +7,11 @@ namespace pmg::control {
 
 VelocityTrim::VelocityTrim(const model::RobotModel& robot, const VelocityTrimOptions& options,
                            double double_support_rate, double dt_s)
-    : options_(options), double_support_rate_(double_support_rate), dt_s_(dt_s), odometry_(robot) {
+    : options_(options),
+      double_support_rate_(double_support_rate),
+      dt_s_(dt_s),
+      odometry_(robot),
+      limits_(robot.command_limits) {
   for (std::size_t c = 0; c < kVelocityChannels; ++c)
     range_[c] = std::max(robot.command_limits.upper[c], -robot.command_limits.lower[c]);
 }
@@ -15,6 +19,7 @@ VelocityTrim::VelocityTrim(const model::RobotModel& robot, const VelocityTrimOpt
 void VelocityTrim::forget() noexcept {
   lagged_ = {};
   before_ = {};
+  asked_ = {};
   measured_ = {};
   trim_ = {};
 }
@@ -24,7 +29,7 @@ void VelocityTrim::reset() noexcept {
   correction_ = {};
 }
 
-const std::array<double, kVelocityChannels>& VelocityTrim::step(const model::RobotState& state,
+const std::array<double, kVelocityChannels>& VelocityTrim::step(const model::RobotState& state, const Command& user,
                                                                 const Reference& reference, bool walks) noexcept {
   const Command taken = user_command(reference);
   double commanded = 0.0;
@@ -32,7 +37,7 @@ const std::array<double, kVelocityChannels>& VelocityTrim::step(const model::Rob
     if (range_[c] > 0.0) commanded += std::abs(taken.u[c]) / range_[c];
   }
   if (walks && commanded > 0.0) {
-    learn(state, taken, reference.contact_weight);
+    learn(state, user, taken, reference.contact_weight);
   } else {
     forget();
   }
@@ -46,9 +51,10 @@ const std::array<double, kVelocityChannels>& VelocityTrim::step(const model::Rob
   return correction_;
 }
 
-void VelocityTrim::learn(const model::RobotState& state, const Command& taken, const PerFoot<double>& weight) noexcept {
+void VelocityTrim::learn(const model::RobotState& state, const Command& user, const Command& taken,
+                         const PerFoot<double>& weight) noexcept {
   const auto measured = odometry_.velocity_H(state, weight);
-  const bool learns = settled(taken) && measured;
+  const bool learns = settled(user, taken) && measured;
   for (std::size_t c = 0; c < kVelocityChannels; ++c) {
     if (measured) measured_[c] += dt_s_ / options_.lag_s * ((*measured)[c] - measured_[c]);
     if (!learns) continue;
@@ -58,15 +64,17 @@ void VelocityTrim::learn(const model::RobotState& state, const Command& taken, c
   }
 }
 
-bool VelocityTrim::settled(const Command& taken) noexcept {
+bool VelocityTrim::settled(const Command& user, const Command& taken) noexcept {
   bool settled = true;
   double changed = 0.0;
   for (std::size_t c = 0; c < kVelocityChannels; ++c) {
     if (range_[c] == 0.0) continue;
+    const double asked = std::clamp(user.u[c], limits_.lower[c], limits_.upper[c]);
+    asked_[c] += dt_s_ / options_.lag_s * (asked - asked_[c]);
     lagged_[c] += dt_s_ / options_.lag_s * (taken.u[c] - lagged_[c]);
     changed += std::abs(taken.u[c] - before_[c]) / range_[c];
     before_[c] = taken.u[c];
-    settled = settled && std::abs(taken.u[c] - lagged_[c]) <= options_.settled_share * range_[c];
+    settled = settled && std::abs(asked - asked_[c]) <= options_.settled_share * range_[c];
   }
   for (double& trim : trim_) trim *= std::exp(-options_.forgets_per_range * changed);
   return settled;

@@ -14,8 +14,8 @@ namespace pmg::control {
 /// Shares are of a channel's range in robot.yaml.
 struct VelocityTrimOptions {
   double gain_per_s = 0.4;  ///< of the missing velocity, so much is added a second; 0: no trim
-  /// A walking robot is behind its command. So it learns while what is taken of the user's command agrees with its own
-  /// low-pass of lag_s to settled_share: about 3 lag_s after a step.
+  /// A walking robot is behind its command. So it learns while the user's command agrees with its own low-pass of lag_s
+  /// to settled_share: about 3 lag_s after a step.
   double lag_s = 1.0, settled_share = 0.05;
   double most_share = 0.25;
   /// A larger miss counts as this: the robot was pushed, or a foot that should carry doesn't.
@@ -40,23 +40,25 @@ class VelocityTrim {
   /// Nothing is added, from now: for a motion that is itself reset.
   void reset() noexcept;
 
-  /// (state, the last tick's reference, whether a policy walks by it) => (what to add to the
+  /// (state, the user's command, the last tick's reference, whether a policy walks by it) => (what to add to the
   /// velocities asked of the clips [m/s, m/s, rad/s]). Goes to zero when nothing is commanded or nothing walks, and
   /// then nothing is remembered. It never jumps. No heap.
-  const std::array<double, kVelocityChannels>& step(const model::RobotState& state, const Reference& reference,
-                                                    bool walks) noexcept;
+  const std::array<double, kVelocityChannels>& step(const model::RobotState& state, const Command& user,
+                                                    const Reference& reference, bool walks) noexcept;
 
  private:
   static constexpr double kMostRate_per_s = 1.0;  ///< of a correction, in ranges
 
-  void learn(const model::RobotState& state, const Command& taken, const PerFoot<double>& weight) noexcept;
-  bool settled(const Command& taken) noexcept;
+  void learn(const model::RobotState& state, const Command& user, const Command& taken,
+             const PerFoot<double>& weight) noexcept;
+  bool settled(const Command& user, const Command& taken) noexcept;
   void forget() noexcept;
 
   VelocityTrimOptions options_;
   double double_support_rate_, dt_s_;
   LegOdometry odometry_;
-  std::array<double, kVelocityChannels> range_{}, before_{}, lagged_{}, measured_{}, trim_{}, correction_{};
+  CommandLimits limits_;
+  std::array<double, kVelocityChannels> range_{}, asked_{}, before_{}, lagged_{}, measured_{}, trim_{}, correction_{};
 };
 
 }  // namespace pmg::control

@@ -93,7 +93,7 @@ Trimmed lame(VelocityTrim& trim, PerfectWalker& walker, const Command& user, dou
     model::RobotState state = walker.state();
     state.dq *= share;
     state.gyro_rad_s *= share;
-    last.correction = trim.step(state, walker.reference(), true);
+    last.correction = trim.step(state, user, walker.reference(), true);
     walker.step(user, last.correction);
     mean += share * walker.does()[kVx];
   }
@@ -148,7 +148,7 @@ TEST(VelocityTrim, FadesWithoutAJumpWhereNoPolicyWalks) {
   double before = lame(trim, walker, {{0.4}}, 0.8, 8.0).correction[kVx];
   EXPECT_GT(before, 0.03);
   for (int k = 0; k < 25; ++k) {
-    const double now = trim.step(walker.state(), walker.reference(), false)[kVx];
+    const double now = trim.step(walker.state(), {{0.4}}, walker.reference(), false)[kVx];
     EXPECT_LE(std::abs(now - before), 0.8 * test::kTick_s + 1e-12);
     before = now;
   }
