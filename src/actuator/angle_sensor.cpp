@@ -46,7 +46,7 @@ double AngleSensor::followed_rad(double angle_rad) const noexcept {
 }
 
 double AngleSensor::shown_rad(double followed_rad) const noexcept {
-  const double shown = followed_rad + parameters_.zero_offset_rad;
+  const double shown = parameters_.angle_scale * followed_rad + parameters_.zero_offset_rad;
   return round_ ? shown : shown + wobble_rad(parameters_, followed_rad);
 }
 
@@ -64,16 +64,17 @@ double AngleSensor::reading_rad(double angle_rad, double share) const noexcept {
   return quantised_rad(shown);
 }
 
-/// Solves q + wobble(q) = reading - offset by Newton's method; expect_simulable keeps the slope above 0.
+/// Solves scale q + wobble(q) = reading - offset by Newton's method; expect_simulable keeps the slope above 0.
 double AngleSensor::angle_rad(const model::ActuatorParameters::Sensor& p, double reading_rad) {
   const double shown_rad = reading_rad - p.zero_offset_rad;
-  if (p.eccentricity_rad == 0.0 && p.ellipticity_rad == 0.0) return shown_rad;
-  double angle_rad = shown_rad;
+  if (p.eccentricity_rad == 0.0 && p.ellipticity_rad == 0.0) return shown_rad / p.angle_scale;
+  double angle_rad = shown_rad / p.angle_scale;
   for (int i = 0; i < 20; ++i) {
     const double of_disc = p.eccentricity_order * p.eccentricity_rad *
                            std::cos(p.eccentricity_order * angle_rad + p.eccentricity_phase_rad);
     const double of_ellipse = 2.0 * p.ellipticity_rad * std::cos(2.0 * angle_rad + p.ellipticity_phase_rad);
-    angle_rad -= (angle_rad + wobble_rad(p, angle_rad) - shown_rad) / (1.0 + of_disc + of_ellipse);
+    angle_rad -=
+        (p.angle_scale * angle_rad + wobble_rad(p, angle_rad) - shown_rad) / (p.angle_scale + of_disc + of_ellipse);
   }
   return angle_rad;
 }
@@ -83,7 +84,7 @@ double AngleSensor::angle_rad(const model::ActuatorParameters::Sensor& p, double
 /// A drive whose position lags derives its speed from that position.
 Seen AngleSensor::stepped(double angle_rad, double dq_rad_s) noexcept {
   followed_rad_ = followed_rad(angle_rad);
-  Seen seen{shown_rad(followed_rad_), dq_rad_s};
+  Seen seen{shown_rad(followed_rad_), parameters_.angle_scale * dq_rad_s};
   if (delays_) {
     past_.push(seen);
     seen = past_.at(delay_steps_);

@@ -27,20 +27,22 @@ class AngleSensor {
 
   /// (angle and speed at the sensor at the beginning of this step) => (what the drive works with).
   Seen step(double angle_rad, double dq_rad_s) noexcept {
-    if (plain_) return {angle_rad + parameters_.zero_offset_rad, dq_rad_s};
+    if (plain_)
+      return {parameters_.angle_scale * angle_rad + parameters_.zero_offset_rad, parameters_.angle_scale * dq_rad_s};
     return stepped(angle_rad, dq_rad_s);
   }
 
   /// The reading of an angle that is reached `share` of a step after the step before began. With s = the angle behind
   /// the hysteresis:
-  ///   quantised(s + zero_offset + eccentricity sin(order s + phase) + ellipticity sin(2 s + its phase)), delay_s ago.
+  ///   quantised(scale s + zero_offset + eccentricity sin(order s + phase) + ellipticity sin(2 s + its phase)), delay_s
+  ///   ago.
   double reading_rad(double angle_rad, double share) const noexcept;
 
   /// Inverse of reading_rad without quantum and delay, for an angle in the middle of the hysteresis.
   static double angle_rad(const model::ActuatorParameters::Sensor& parameters, double reading_rad);
 
-  /// Whether the drive feels a change of speed within the step in which it happens.
-  bool is_prompt() const noexcept { return prompt_; }
+  /// By how much the speed that the drive sees changes with the speed within the same step; 0 if it sees it later.
+  double prompt_speed() const noexcept { return prompt_ ? parameters_.angle_scale : 0.0; }
 
   void restart_periods() noexcept { refresh_.restart(); }
 

@@ -44,8 +44,10 @@ void expect_simulable(const model::ActuatorParameters& parameters, double step_s
                                   " s; expected at most " + std::to_string(kMost) + " steps");
   }
   const auto& [command, drive, sensor, transmission, friction, thermal, ripple, residual] = parameters;
-  expect(std::abs(sensor.eccentricity_order * sensor.eccentricity_rad) + 2.0 * std::abs(sensor.ellipticity_rad) < 1.0,
-         "eccentricity times its order and twice the ellipticity are a radian or more; expected a reading that grows "
+  expect(std::abs(sensor.eccentricity_order * sensor.eccentricity_rad) + 2.0 * std::abs(sensor.ellipticity_rad) <
+             sensor.angle_scale,
+         "eccentricity times its order and twice the ellipticity are the reading's scale or more; expected a reading "
+         "that grows "
          "with q");
   expect(sensor.lag_stages == 1.0 || sensor.lag_stages == 2.0 || sensor.lag_stages == 3.0,
          "sensor.lag_stages isn't 1, 2 or 3");

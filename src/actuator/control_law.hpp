@@ -23,8 +23,8 @@ class ControlLaw {
 
   void reset() noexcept;
 
-  /// prompt: the drive feels a change of speed within the step in which it happens.
-  Output step(const ActuatorInput& told, const Seen& seen, bool prompt) noexcept;
+  /// prompt_speed: by how much the speed that is seen changes with the speed within the same step.
+  Output step(const ActuatorInput& told, const Seen& seen, double prompt_speed) noexcept;
 
   /// What the output would be without its position error.
   double standing_output() const noexcept;
@@ -42,7 +42,7 @@ class ControlLaw {
 
 /// Newton metres are newton metres under every law: the drive divides its feed-forward by its torque constant (that of
 /// the reference temperature, because it does not know its winding's) and by its supply.
-inline ControlLaw::Output ControlLaw::step(const ActuatorInput& told, const Seen& seen, bool prompt) noexcept {
+inline ControlLaw::Output ControlLaw::step(const ActuatorInput& told, const Seen& seen, double prompt_speed) noexcept {
   const model::ActuatorParameters::Drive& p = parameters_;
   if (!hold_.every_step() && !hold_.due()) return {held_, 0.0};
   const double kd = p.kd_scale * told.kd;
@@ -52,7 +52,7 @@ inline ControlLaw::Output ControlLaw::step(const ActuatorInput& told, const Seen
   const double of_position =
       p.kp_scale * told.kp * (p.dead_band_rad == 0.0 ? error_rad : beyond_dead_band_rad(error_rad));
   double wish = of_position + kd * (told.dq_rad_s - seen.dq_rad_s) + forward;
-  bool follows_speed = prompt && hold_.every_step();
+  bool follows_speed = hold_.every_step();
   if (p.output_dead_band > 0.0) {
     wish -= std::clamp(wish, -p.output_dead_band, p.output_dead_band);
     follows_speed = follows_speed && wish != 0.0;
@@ -60,7 +60,7 @@ inline ControlLaw::Output ControlLaw::step(const ActuatorInput& told, const Seen
   const double value = std::clamp(wish, -p.limit, p.limit);
   of_position_ = of_position;
   held_ = value;
-  return {value, follows_speed && value == wish ? kd : 0.0};
+  return {value, follows_speed && value == wish ? prompt_speed * kd : 0.0};
 }
 
 }  // namespace pmg::actuator

@@ -11,25 +11,26 @@
 #include "calib/unknown.hpp"
 #include "effects/catalogue.hpp"
 #include "effects/folds.hpp"
+#include "effects/form_choice.hpp"
 #include "effects/intervals.hpp"
 #include "effects/period.hpp"
 #include "effects/separation.hpp"
+#include "effects/strengths.hpp"
 
 namespace pmg::diagnosis {
 
 namespace {
 
-std::string in_its_place(const std::string& cause, const std::string& other, const effects::SeenSeparation& apart) {
-  if (apart.blocks == 0) return fmt::format("{} gives indistinguishable rollouts on all runs", other);
-  if (apart.deviations < 0.0) {
-    return fmt::format(
-        "{} in its place is {:.1f} deviations better on the {} blocks of half a second in which they differ", other,
-        -apart.deviations, apart.blocks);
-  }
-  return fmt::format(
-      "{} in its place is {:.1f} deviations worse on the {} blocks of half a second in which they differ, {:.0f} % of "
-      "what is expected were {} the truth",
-      other, apart.deviations, apart.blocks, 100.0 * apart.share_of_expected, cause);
+/// What keeps a rival open, in words.
+std::string in_its_place(const std::string& other, const effects::SeenSeparation& apart,
+                         const effects::ApartLimits& enough) {
+  if (apart.blocks == 0) return fmt::format("with {} in its place the simulation moves alike in all recordings", other);
+  const std::string fits = fmt::format(
+      "{} in its place fits {} by {:.1f} standard deviations in the {} half-seconds in which the two differ", other,
+      apart.deviations < 0.0 ? "better" : "worse", std::abs(apart.deviations), apart.blocks);
+  if (apart.deviations < enough.deviations) return fmt::format("{}; {:.0f} would tell", fits, enough.deviations);
+  if (apart.blocks < enough.blocks) return fmt::format("{}; {} half-seconds would tell", fits, enough.blocks);
+  return fmt::format("{}, but by less than half of what it should", fits);
 }
 
 class Explaining {
@@ -112,7 +113,7 @@ class Explaining {
     for (const Trial& other : search_.alternatives(rest, cause.effect)) {
       const effects::SeenSeparation apart = seen(other.extension);
       if (!is_rival(other, apart) || search_.refuted(other)) continue;
-      cause.evidence.push_back(in_its_place(cause.effect, other.effect, apart));
+      cause.evidence.push_back(in_its_place(other.effect, apart, search_.apart_limits()));
       cause.or_instead.push_back(other.effect);
       rivals.models.push_back(other.extension.fitted);
       rivals.names.push_back(other.effect);
@@ -126,11 +127,7 @@ class Explaining {
   }
 
   bool is_rival(const Trial& other, const effects::SeenSeparation& apart) const {
-    for (const calib::Unknown& u : other.extension.fitted.unknowns) {
-      const bool stiffest = u.name == "transmission.stiffness_Nm_per_rad" &&
-                            calib::value(other.extension.fitted.model, u.name) > 0.99 * u.upper;
-      if (stiffest) return false;  // at the upper bound of stiffness the shaft is rigid: no rival
-    }
+    if (effects::at_its_limit(other.extension.fitted)) return false;
     return !effects::told_apart(apart, search_.apart_limits());
   }
 
@@ -173,7 +170,7 @@ class Explaining {
     }
     if (const auto read_off = measured(effect)) return {effect, *read_off, LookedAt::kRecordings};
     if (search_.stopped()) return {effect, "the search was interrupted before it", LookedAt::kNot};
-    return {effect, "not fitted in full: to first order it explains less than others do", LookedAt::kLinearised};
+    return {effect, "not fitted in full: a quick look explains less with it than with others", LookedAt::kLinearised};
   }
 
   /// Why an effect that is read off the recordings is no cause; nothing for other effects, and where they don't tell.

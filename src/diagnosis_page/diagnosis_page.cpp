@@ -140,12 +140,13 @@ struct NamedCauses {
   }
 };
 
-NamedCauses named_causes(const Diagnosis& diagnosis) {
+NamedCauses named_causes(const Diagnosis& diagnosis, const std::string& unit) {
   NamedCauses found;
   for (const Cause& cause : diagnosis.causes) {
     std::string text = effects::described(cause.effect, cause.form, cause.form_or_instead);
     for (const std::string& other : cause.same_here) text += " (on this rig the same as " + effects::title(other) + ")";
     for (const std::string& other : cause.or_instead) text += " or " + effects::title(other);
+    text += fmt::format(" ({} {} without it)", thousandths(cause.held_out_error_before), unit);
     (cause.or_instead.empty() ? found.told : found.open).push_back(text);
   }
   for (const assembly::Variation& one : diagnosis.assemblies.varies)
@@ -157,15 +158,16 @@ NamedCauses named_causes(const Diagnosis& diagnosis) {
 }  // namespace
 
 std::string verdict_text(const bench::Bench& bench, const Diagnosis& diagnosis, const DiagnosedRuns& runs) {
-  const NamedCauses causes = named_causes(diagnosis);
+  const std::string unit = calib::position_unit(bench, true);
+  const NamedCauses causes = named_causes(diagnosis, unit);
   std::string text;
   switch (diagnosis.verdict) {
     case evidence::Verdict::kFound:
       text = fmt::format("Found: {}", fmt::join(causes.all(), ", "));
       break;
     case evidence::Verdict::kAmbiguous:
-      text = fmt::format("Can't be told apart with these recordings: {}", fmt::join(causes.open, "; "));
-      if (!causes.told.empty()) text += fmt::format(". Found besides: {}", fmt::join(causes.told, ", "));
+      if (!causes.told.empty()) text = fmt::format("Found: {}. ", fmt::join(causes.told, ", "));
+      text += fmt::format("Open, as these recordings don't tell which: {}", fmt::join(causes.open, "; "));
       break;
     case evidence::Verdict::kNone:
       text = "Nothing beyond noise";
@@ -180,14 +182,13 @@ std::string verdict_text(const bench::Bench& bench, const Diagnosis& diagnosis, 
                          causes.all().empty() ? "" : "; suspected until then: ", fmt::join(causes.all(), ", "));
       break;
   }
-  const std::string unit = calib::position_unit(bench, true);
   text += fmt::format(". Mean absolute error {} {} before, {} {} after, on {} {} runs",
                       thousandths(diagnosis.held_out_before), unit, thousandths(diagnosis.held_out_after), unit,
                       judged_runs(diagnosis, runs).size(), diagnosis.held_out ? "held-out" : "fitted (over folds)");
   if (diagnosis.noise_floor.mean_absolute_rad > 0.0 && diagnosis.verdict != evidence::Verdict::kNone &&
       diagnosis.verdict != evidence::Verdict::kInterrupted) {
-    text +=
-        fmt::format(": {:.0f} % of the way to the noise floor", std::max(0.0, 100.0 * diagnosis.share_of_way_to_floor));
+    text += fmt::format(": {:.0f} % of the way to the noise floor",
+                        100.0 * std::clamp(diagnosis.share_of_way_to_floor, 0.0, 1.0));
   }
   return text;
 }

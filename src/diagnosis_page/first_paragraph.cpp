@@ -9,6 +9,7 @@
 #include <set>
 #include <vector>
 
+#include "diagnosis_page/amount.hpp"
 #include "diagnosis_page/assemblies.hpp"
 #include "effects/catalogue.hpp"
 
@@ -19,34 +20,37 @@ namespace {
 using diagnosis::Cause;
 using diagnosis::Diagnosis;
 
-/// Lengths in mm, angles in degrees: a workshop knows no milliradians.
-std::string size(const bench::Bench& bench, double value) {
-  const bool linear = bench.rig == bench::Rig::kLinear;
-  const double shown = linear ? 1e3 * value : value * 180.0 / std::numbers::pi;
-  return fmt::format("{} {}", shown < 100.0 ? fmt::format("{:.2g}", shown) : fmt::format("{:.0f}", shown),
-                     linear ? "mm" : "degrees");
-}
-
 std::string recordings(int count) { return fmt::format("{} recording{}", count, count == 1 ? "" : "s"); }
 
-/// The cause, and every name that it may have as well.
-std::string with_other_names(const Cause& cause) {
-  std::vector<std::string> names{cause.effect};
-  names.insert(names.end(), cause.or_instead.begin(), cause.or_instead.end());
-  names.insert(names.end(), cause.same_here.begin(), cause.same_here.end());
+/// The cause with its size, and every name that it may have as well.
+std::string with_other_names(const bench::Bench& bench, const Diagnosis& diagnosis, const Cause& cause) {
+  std::vector<std::string> names{effects::workshop_words(cause.effect).what};
+  if (const std::string size = amount(bench, diagnosis, cause); !size.empty()) names[0] += " (" + size + ")";
+  for (const std::string& other : cause.or_instead) names.push_back(effects::workshop_words(other).what);
+  for (const std::string& other : cause.same_here) names.push_back(effects::workshop_words(other).what);
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (i > 0) text += i + 1 == names.size() ? " or " : ", ";
-    text += effects::workshop_words(names[i]).what;
+    text += names[i];
   }
   return text;
 }
 
-std::string all_causes(const Diagnosis& diagnosis) {
+enum class Which { kAll, kSure, kOpen };
+
+bool belongs(const Cause& cause, Which which) {
+  return which == Which::kAll || cause.or_instead.empty() == (which == Which::kSure);
+}
+
+std::string causes_text(const bench::Bench& bench, const Diagnosis& diagnosis, Which which) {
+  std::vector<std::string> texts;
+  for (const Cause& cause : diagnosis.causes) {
+    if (belongs(cause, which)) texts.push_back(with_other_names(bench, diagnosis, cause));
+  }
   std::string text;
-  for (std::size_t i = 0; i < diagnosis.causes.size(); ++i) {
-    if (i > 0) text += i + 1 == diagnosis.causes.size() ? "; and " : "; ";
-    text += with_other_names(diagnosis.causes[i]);
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    if (i > 0) text += i + 1 == texts.size() ? "; and " : "; ";
+    text += texts[i];
   }
   return text;
 }
@@ -75,50 +79,56 @@ std::string on_what(const Diagnosis& diagnosis) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::string what_every_assembly_has(const Diagnosis& diagnosis) {
-  const std::string causes = all_causes(diagnosis);
+/// The causes; which of them are sure, and which open.
+std::string has(const bench::Bench& bench, const Diagnosis& diagnosis) {
+  if (!some(diagnosis, &Cause::or_instead))
+    return fmt::format("This joint has {}.", causes_text(bench, diagnosis, Which::kAll));
+  std::string text;
+  if (const std::string sure = causes_text(bench, diagnosis, Which::kSure); !sure.empty())
+    text = fmt::format("Sure: this joint has {}. ", sure);
+  return text + fmt::format("Open: it has {}. Where it says \"or\", these recordings don't tell which.",
+                            causes_text(bench, diagnosis, Which::kOpen));
+}
+
+std::string what_every_assembly_has(const bench::Bench& bench, const Diagnosis& diagnosis) {
   switch (diagnosis.verdict) {
     case evidence::Verdict::kNone:
       return "We found nothing in this joint that its simulation doesn't have already.";
     case evidence::Verdict::kFound:
     case evidence::Verdict::kAmbiguous:
-      if (causes.empty()) return "Its simulation is right on average over the assemblies of this joint.";
-      return fmt::format("This joint has {}. Its simulation did not have this, or not in the right size.", causes);
+      if (diagnosis.causes.empty()) return "Its simulation is right on average over the assemblies of this joint.";
+      return has(bench, diagnosis) + " Its simulation did not have this, or not in the right size.";
     case evidence::Verdict::kUnexplained:
     case evidence::Verdict::kInterrupted:
       break;
   }
   std::string text = "This joint does something that its simulation doesn't do, and no effect on our list explains it.";
   if (!diagnosis.depends_on.empty()) text += fmt::format(" It changes with {}.", on_what(diagnosis));
-  if (!causes.empty()) text += fmt::format(" Besides, it has {}.", causes);
+  if (!diagnosis.causes.empty()) text += " Besides: " + has(bench, diagnosis);
   return text;
 }
 
-std::string what_is_wrong(const Diagnosis& diagnosis) {
+std::string what_is_wrong(const bench::Bench& bench, const Diagnosis& diagnosis) {
   const std::string differences = differences_in_words(diagnosis);
-  return what_every_assembly_has(diagnosis) + (differences.empty() ? "" : " " + differences);
+  return what_every_assembly_has(bench, diagnosis) + (differences.empty() ? "" : " " + differences);
 }
 
 std::string how_sure(const Diagnosis& diagnosis) {
   std::string text;
   switch (diagnosis.verdict) {
     case evidence::Verdict::kFound:
-      text = "We are fairly sure: no other effect on our list explains the recordings as well.";
-      break;
-    case evidence::Verdict::kAmbiguous:
-      text = "We are not sure which: where it says \"or\", these recordings fit the one as well as the other.";
+      text = " We are fairly sure: no other effect on our list explains the recordings as well.";
       break;
     case evidence::Verdict::kNone:
-      text = "We are fairly sure of what these recordings can show; \"Not ruled out\" lists what we can't say.";
+      text = " We are fairly sure of what these recordings can show; \"Not ruled out\" lists what we can't say.";
       break;
     case evidence::Verdict::kUnexplained:
-      text = "We are sure that something is there: it is clearly larger than the noise of the recordings.";
+      text = " We are sure that something is there: it is clearly larger than the noise of the recordings.";
       break;
+    case evidence::Verdict::kAmbiguous:
     case evidence::Verdict::kInterrupted:
       break;
   }
-  if (some(diagnosis, &Cause::or_instead) && diagnosis.verdict == evidence::Verdict::kUnexplained)
-    text += " Where it says \"or\", these recordings don't tell which.";
   if (some(diagnosis, &Cause::same_here) && diagnosis.verdict != evidence::Verdict::kAmbiguous)
     text += " On this test rig the names with \"or\" mean the same; the simulation is right with either.";
   return text;
@@ -171,7 +181,7 @@ std::string record_next(const diagnosis::NextExcitation& next) {
 std::string what_next(const Diagnosis& diagnosis) {
   const bool more = diagnosis.next_excitation && !diagnosis.next_excitation->runs.empty();
   if (diagnosis.verdict == evidence::Verdict::kAmbiguous && more)
-    return fmt::format("Next: {}.", record_next(*diagnosis.next_excitation));
+    return fmt::format("To settle it, {}.", record_next(*diagnosis.next_excitation));
   if (diagnosis.verdict == evidence::Verdict::kNone) return "Next: nothing to do.";
   if (!diagnosis.causes.empty()) {
     std::string text = fmt::format("Next: {}", effects::workshop_words(diagnosis.causes.front().effect).check);
@@ -203,7 +213,7 @@ std::string first_paragraph(const bench::Bench& bench, const Diagnosis& diagnosi
     return "The simulation doesn't move as this joint does, not even roughly: the recordings may be of something else. "
            "Next: "
            "look at the pictures, and check which joint was recorded, its commands and its readings.";
-  return fmt::format("{} {} {}{} {}", what_is_wrong(diagnosis), how_sure(diagnosis), what_it_costs(diagnosis),
+  return fmt::format("{}{} {}{} {}", what_is_wrong(bench, diagnosis), how_sure(diagnosis), what_it_costs(diagnosis),
                      how_much_better(bench, diagnosis), what_next(diagnosis));
 }
 

@@ -17,10 +17,14 @@ fitting::Residuals at(const NestedFit& fit, calib::JointModel model, const std::
   return fit.residuals(model);
 }
 
-constexpr std::size_t kRunsForPeriods = 6;          // a hundred periods are tried on so many runs
-constexpr double kCoarsest = 0.03, kFinest = 0.01;  // of a period: the first grid
-constexpr double kFirstPeriods = 16.0;              // of a beginning's length: out of step by a half with kCoarsest
-constexpr std::size_t kFollowed = 3;
+constexpr std::size_t kRunsForPeriods = 6;  // some hundred periods are tried on so many runs
+constexpr double kFirstPeriods = 16.0;      // of a beginning's length
+/// From one to the next of the first grid, at the end of a beginning. The right period is at most half of it off, and
+/// must explain more than a wrong one that is in step where the commands jump.
+constexpr double kOutOfStep_periods = 0.15;
+constexpr double kCoarsest = 0.01, kFinest = 0.003;  // of a period: the same, limited
+constexpr double kApart = 0.045;                     // of a period: those that are followed
+constexpr std::size_t kFollowed = 24, kStarts = 3;   // at first, and at the end
 
 /// A period, and the squares of a beginning's residuals with it as a share of those without it.
 struct TriedPeriod {
@@ -87,14 +91,14 @@ class Beginnings {
 };
 
 /// The best periods that lie apart by more than this share.
-std::vector<TriedPeriod> best_apart(std::vector<TriedPeriod> all, double share) {
+std::vector<TriedPeriod> best_apart(std::vector<TriedPeriod> all, double share, std::size_t most) {
   std::stable_sort(all.begin(), all.end(), explains_more);
   std::vector<TriedPeriod> found;
   for (const TriedPeriod& one : all) {
     const bool near = std::any_of(found.begin(), found.end(), [&](const TriedPeriod& other) {
       return std::abs(one.period_s - other.period_s) <= share * one.period_s;
     });
-    if (!near && found.size() < kFollowed) found.push_back(one);
+    if (!near && found.size() < most) found.push_back(one);
   }
   return found;
 }
@@ -110,23 +114,27 @@ std::vector<double> promising_periods_s(const NestedFit& fit, const calib::Joint
   for (double period_s = low_s; period_s <= high_s;) {
     const double length_s = beginnings.length_s(period_s, kFirstPeriods);
     tried.push_back(beginnings.tried(period_s, length_s));
-    period_s *= 1.0 + std::clamp(0.5 * period_s / length_s, kFinest, kCoarsest);
+    period_s *= 1.0 + std::clamp(kOutOfStep_periods * period_s / length_s, kFinest, kCoarsest);
   }
-  std::vector<TriedPeriod> best = best_apart(std::move(tried), 1.5 * kCoarsest);
-  std::vector<double> found;
-  for (TriedPeriod one : best) {
-    double length_s = beginnings.length_s(one.period_s, kFirstPeriods);
-    double step = 0.5 * std::clamp(0.5 * one.period_s / length_s, kFinest, kCoarsest);
-    for (bool whole = false; !whole; step *= 0.5) {
-      whole = length_s >= beginnings.longest_s();
-      const TriedPeriod there = beginnings.tried(one.period_s, length_s);
-      one = std::min({there, beginnings.tried(one.period_s * (1.0 - step), length_s),
+  // Each time on runs twice as long, half as many of them stay.
+  std::vector<TriedPeriod> best = best_apart(std::move(tried), kApart, kFollowed);
+  double periods = kFirstPeriods, finer = 0.5;
+  for (bool whole = false; !whole; periods *= 2.0, finer *= 0.5) {
+    whole = true;
+    for (TriedPeriod& one : best) {
+      const double length_s = beginnings.length_s(one.period_s, periods);
+      const double step =
+          finer * std::clamp(kOutOfStep_periods * one.period_s / beginnings.length_s(one.period_s, kFirstPeriods),
+                             kFinest, kCoarsest);
+      whole = whole && length_s >= beginnings.longest_s();
+      one = std::min({beginnings.tried(one.period_s, length_s), beginnings.tried(one.period_s * (1.0 - step), length_s),
                       beginnings.tried(one.period_s * (1.0 + step), length_s)},
                      explains_more);
-      length_s = std::min(beginnings.longest_s(), 2.0 * length_s);
     }
-    found.push_back(one.period_s);
+    best = best_apart(std::move(best), 0.0, std::max(kStarts, best.size() / 2));
   }
+  std::vector<double> found;
+  for (const TriedPeriod& one : best) found.push_back(one.period_s);
   return found;
 }
 

@@ -15,7 +15,7 @@ bool is_period(const std::string& parameter);
 /// [s]). A wrong period P + dP is out of step after a time t = P^2 / (4 dP), so a whole run of length T shows a period
 /// only on a grid as fine as P / (4 T), of which there would be a thousand values. So the beginnings of runs, some
 /// periods long, are searched first on a coarse grid, and the best periods again on twice as long a beginning and half
-/// the grid, until the runs end. Costs about as much as twenty rollouts of every run, whatever the runs' length.
+/// the grid, until the runs end. Costs about as much as fifty rollouts of every run, whatever the runs' length.
 std::vector<double> promising_periods_s(const NestedFit& fit, const calib::JointModel& model,
                                         const std::string& parameter, double low_s, double high_s);
 

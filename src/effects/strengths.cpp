@@ -59,6 +59,14 @@ bool fades_unseen(const std::string& effect, const Forms& forms, const calib::Jo
   return std::exp(-std::pow(speed_rad_s / friction.stribeck_rad_s, friction.stribeck_exponent)) > kHalf;
 }
 
+bool at_its_limit(const NestedModel& model) {
+  return std::ranges::any_of(model.unknowns, [&](const calib::Unknown& u) {
+    const double x = calib::value(model.model, u.name);
+    return (u.name == "transmission.stiffness_Nm_per_rad" && x > 0.99 * u.upper) ||
+           (u.name == "thermal.torque_fade_s" && x < 1.01 * u.lower);
+  });
+}
+
 double likeness(const NestedModel& model, const Forms& forms, const calib::JointModel& neutral,
                 const std::string& first, const std::string& second) {
   const Eigen::VectorXd one = from_neutral(model, forms, neutral, first),

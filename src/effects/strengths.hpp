@@ -30,6 +30,10 @@ bool has_other_sign(const std::string& effect, const calib::JointModel& model);
 /// it is Coulomb friction by another name, and may take the place of Coulomb friction and of a second effect.
 bool fades_unseen(const std::string& effect, const Forms& forms, const calib::JointModel& model, double speed_rad_s);
 
+/// True where a number of an effect is at the edge of its range at which the effect is none, or another: the stiffest
+/// shaft is rigid; torque that has faded at once is weaker from the beginning, a gain.
+bool at_its_limit(const NestedModel& model);
+
 /// (linearised model, its forms, the model without effects, two of its effects) => (cosine of what the two do to the
 /// rollouts). With the difference d of an effect's strengths from neutral and the Jacobian's columns J of these
 /// strengths, beyond what all other unknowns can do, the effect does J d. 1: both do the same; -1: they cancel. 0 where

@@ -62,6 +62,7 @@ struct ActuatorParameters {
   /// Errors of the drive's measurement of its joint.
   struct Sensor {
     double zero_offset_rad = 0.0;  ///< reading minus true angle
+    double angle_scale = 1.0;      ///< reading over true angle, speeds too: counts a turn, ratio of the gear before it
     double hysteresis_rad = 0.0;   ///< play between joint and sensor, end to end: the reading waits at a reversal
     /// Of the sensor's disc or magnet: adds eccentricity sin(order q + phase) to the reading; a disc on the motor's
     /// shaft turns `order` times as fast as the joint.
@@ -254,6 +255,7 @@ inline constexpr auto kActuatorParameters = [] {
       PMG_ACTUATOR_PARAMETER(drive, most_power_W, kPower, 0.2, 5000.0, kPositive, 2.0),
       PMG_ACTUATOR_PARAMETER(drive, cut_speed_rad_s, kSpeed, 0.5, 60.0, kPositive, 1.2),
       PMG_ACTUATOR_PARAMETER(sensor, zero_offset_rad, kAngle, -0.15, 0.15, kAny, 0.3),
+      PMG_ACTUATOR_PARAMETER(sensor, angle_scale, kFactor, 0.5, 2.0, kPositive, 1.2),
       PMG_ACTUATOR_PARAMETER(sensor, hysteresis_rad, kAngle, 0.0, 0.1, kNotNegative, 0.06),
       PMG_ACTUATOR_PARAMETER(sensor, eccentricity_rad, kAngle, 0.0, 0.1, kNotNegative, 0.15),
       PMG_ACTUATOR_PARAMETER(sensor, eccentricity_order, kOrder, 1.0, 64.0, kNotNegative, 5.0),

@@ -118,7 +118,7 @@ TorqueLine ActuatorModel::drive(const ActuatorInput& input, double q_rad, double
     error_rad_ = at_drive.q_rad - seen.q_rad;
   }
   if (!input.enabled) return motor_.idle(dq_rad_s, warmth_.torque());
-  const actuator::ControlLaw::Output output = law_.step(at_drive, seen, sensor_.is_prompt());
+  const actuator::ControlLaw::Output output = law_.step(at_drive, seen, sensor_.prompt_speed());
   if (residual_.acts()) output_ = output.value;
   if (rests)
     motor_.settle(output.value);

@@ -45,7 +45,10 @@ std::vector<Kind> kinds() {
     p.friction = {.viscous_Nm_s_per_rad = 0.1, .coulomb_Nm = 0.4, .asymmetry = 0.2, .presliding_rad = 0.02};
   });
   add("Delay", [](auto& p) { p.command.delay_s = 0.0237, p.command.rate_limit_rad_s = 3.0; });
-  add("Sensor", [](auto& p) { p.sensor = {.zero_offset_rad = 0.03, .lag_s = 0.004, .velocity_lag_s = 0.002}; });
+  add("Sensor", [](auto& p) {
+    p.sensor = {.zero_offset_rad = 0.03, .angle_scale = 1.1, .lag_s = 0.004, .velocity_lag_s = 0.002};
+  });
+  add("ReadingsScale", [](auto& p) { p.sensor.angle_scale = 0.9; });
   add("Hold", [](auto& p) { p.command.hold_s = 0.006, p.drive.dead_band_rad = 0.01; });
   add("DeadBandForms", [](auto& p) {
     p.drive.dead_band_rad = 0.02;

@@ -197,6 +197,38 @@ TEST_F(FormsOfABench, FrictionByTheSquareOfSpeedIsViscousFrictionInThatForm) {
       std::string::npos);
 }
 
+/// Where the weight is known, these three and a wrong load are four things: gain, torque and readings by one factor.
+TEST_F(FormsOfABench, WeightTellsTheScalesOfGainTorqueAndReadingsFromEachOtherAndFromTheLoad) {
+  const auto expect = [&](const std::string& form, const std::string& parameter, double planted) {
+    SCOPED_TRACE(form);
+    const Diagnosis found =
+        diagnosed([&](model::ActuatorParameters& p) { model::actuator_parameter(parameter).in(p) = planted; });
+    EXPECT_EQ(found.verdict, evidence::Verdict::kFound);
+    ASSERT_EQ(found.causes.size(), 1U);
+    const Cause& cause = found.causes.front();
+    EXPECT_EQ(cause.effect, "gain");
+    EXPECT_EQ(cause.form, form);
+    EXPECT_TRUE(cause.form_or_instead.empty());
+    ASSERT_EQ(cause.parameters.size(), 1U);
+    EXPECT_LT(cause.parameters.front().estimate.low, planted);
+    EXPECT_GT(cause.parameters.front().estimate.high, planted);
+  };
+  expect("position", "drive.kp_scale", 0.78);
+  expect("torque", "drive.torque_scale", 0.78);
+  expect("reading", "sensor.angle_scale", 1.1);
+}
+
+TEST_F(FormsOfABench, ACurrentLimitBelowTheKnownOneIsALimitOfTorqueAtAnySpeed) {
+  const Diagnosis found = diagnosed([](model::ActuatorParameters& p) { p.drive.stall_torque_Nm = 8.0; });
+  ASSERT_EQ(found.causes.size(), 1U);
+  const Cause& cause = found.causes.front();
+  EXPECT_EQ(cause.effect, "torque_speed");
+  const std::vector<std::string>& open = cause.form_or_instead;
+  EXPECT_TRUE(cause.form == "torque" || std::ranges::find(open, "torque") != open.end())
+      << cause.form << ": a line whose speed without load is far beyond the recorded ones is the same";
+  EXPECT_NEAR(cause.parameters.front().estimate.value, 8.0, 0.4);
+}
+
 TEST_F(FormsOfABench, TheSimplestFormStandsWhereItIsTheTruth) {
   const Diagnosis found = diagnosed([](model::ActuatorParameters& p) { p.friction.viscous_Nm_s_per_rad += 0.2; });
   ASSERT_EQ(found.causes.size(), 1U);

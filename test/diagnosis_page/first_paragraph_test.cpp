@@ -67,7 +67,64 @@ TEST(FirstParagraph, OfTwoRivalsAsksForTheRecordingsThatTell) {
   both.next_excitation->runs.resize(2);
   both.next_excitation->runs.front().times = 3;
   EXPECT_THAT(paragraph_of(both), testing::AllOf(HasSubstr("a delay between command and motion or a position reading"),
-                                                 HasSubstr("not sure which"), HasSubstr("make the 4 recordings")));
+                                                 HasSubstr("these recordings don't tell which"),
+                                                 HasSubstr("To settle it, make the 4 recordings")));
+}
+
+TEST(FirstParagraph, NamesWhatIsSureApartFromWhatIsOpen) {
+  const std::string text = paragraph_of(
+      diagnosis_of(Verdict::kAmbiguous, {cause("delay", {"sensor_lag"}), cause("coulomb"), cause("backlash")}));
+  const std::size_t sure = text.find("Sure: this joint has dry friction; and play in the gear."),
+                    open = text.find("Open: it has a delay between command and motion or a position reading");
+  ASSERT_NE(sure, std::string::npos) << text;
+  ASSERT_NE(open, std::string::npos) << text;
+  EXPECT_LT(sure, open);
+}
+
+Cause cause_of(const std::string& effect, const std::string& parameter, evidence::Interval value) {
+  Cause made = cause(effect);
+  made.parameters = {{parameter, value, ""}};
+  return made;
+}
+
+TEST(FirstParagraph, SaysHowMuchInUnitsOfAWorkshop) {
+  Diagnosis joint = diagnosis_of(Verdict::kFound, {});
+  joint.before.actuator.friction.coulomb_Nm = 0.5;
+  joint.before.actuator.friction.viscous_Nm_s_per_rad = 0.2;
+  const auto said = [&](const std::string& effect, const std::string& parameter, evidence::Interval value) {
+    joint.causes = {cause_of(effect, parameter, value)};
+    return paragraph_of(joint);
+  };
+  EXPECT_THAT(said("backlash", "transmission.backlash_rad", {0.0087, 0.007, 0.0105}),
+              HasSubstr("play in the gear (0.5 degrees, between 0.4 and 0.6)"));
+  EXPECT_THAT(said("coulomb", "friction.coulomb_Nm", {0.67, 0.6, 0.7}),
+              HasSubstr("dry friction (0.67 Nm, between 0.6 and 0.7; the simulation has 0.5)"));
+  EXPECT_THAT(said("viscous", "friction.viscous_Nm_s_per_rad", {0.3, 0.28, 0.32}),
+              HasSubstr("friction that grows with speed (1.5 times what the simulation has)"));
+  EXPECT_THAT(said("gain", "drive.torque_scale", {0.78, 0.7, 1.06}), HasSubstr("(-22 %, between -30 and 6)"));
+  EXPECT_THAT(said("gain", "drive.torque_scale", {1.25, 1.25, 1.25}), HasSubstr("(+25 %)"));
+  EXPECT_THAT(said("rate_limit", "command.rate_limit_rad_s", {2.0, 2.0, 2.0}), HasSubstr("(at most 115 degrees/s)"));
+  EXPECT_THAT(said("load_friction", "friction.load_driving", {0.13, 0.13, 0.13}),
+              HasSubstr("(13 % of the torque that it carries)"));
+  EXPECT_THAT(said("delay", "command.delay_s", {0.012, 0.01, 0.014}), HasSubstr("(12 ms, between 10 and 14)"));
+  EXPECT_THAT(said("thermal_drift", "thermal.friction_per_K", {-0.01, -0.02, -0.005}),
+              HasSubstr("its temperature. Its simulation"))
+      << "no workshop has a unit for it";
+  for (const auto& parameter : model::actuator_parameters())
+    EXPECT_THAT(said("coulomb", std::string(parameter.name), {0.0, 0.0, 0.0}),
+                testing::Not(testing::ContainsRegex("nan|inf")))
+        << parameter.name;
+}
+
+TEST(FirstParagraph, SaysMillimetresAndNewtonsOfALinearAxis) {
+  bench::Bench axis;
+  axis.rig = bench::Rig::kLinear;
+  const auto said = [&](const std::string& parameter, double value) {
+    return first_paragraph(axis,
+                           diagnosis_of(Verdict::kFound, {cause_of("backlash", parameter, {value, value, value})}));
+  };
+  EXPECT_THAT(said("transmission.backlash_rad", 0.0002), HasSubstr("(0.2 mm)"));
+  EXPECT_THAT(said("ripple.offset_Nm", 3.2), HasSubstr("(3.2 N)"));
 }
 
 TEST(FirstParagraph, OfNothingFoundClaimsNoMoreThanTheRecordingsShow) {

@@ -103,10 +103,24 @@ TEST(DiagnosisPage, CallsOnlyThoseCausesOpenThatHaveARival) {
   made.diagnosis.causes.push_back(made.diagnosis.causes.front());
   made.diagnosis.causes.back().effect = "delay";
   made.diagnosis.causes.back().or_instead = {"hold"};
+  made.diagnosis.causes.front().or_instead.clear();
+  made.diagnosis.causes.front().held_out_error_before = 0.0074;
+  made.diagnosis.causes.back().held_out_error_before = 0.0012;
   const std::string text = verdict_text(made.of.bench, made.diagnosis, made.runs);
-  EXPECT_THAT(text,
-              testing::StartsWith("Can't be told apart with these recordings: " + effects::title("delay") + " or " +
-                                  effects::title("hold") + ". Found besides: " + effects::title("coulomb") + ". "));
+  EXPECT_THAT(text, testing::StartsWith("Found: " + effects::title("coulomb") +
+                                        " (7.4 mrad without it). Open, as these recordings don't tell which: " +
+                                        effects::title("delay") + " or " + effects::title("hold") +
+                                        " (1.2 mrad without it). Mean absolute error"));
+}
+
+TEST(DiagnosisPage, NoModelIsNearerToTheNoiseThanTheNoise) {
+  Made made;
+  made.diagnosis.verdict = evidence::Verdict::kFound;
+  made.diagnosis.noise_floor.mean_absolute_rad = 0.001;
+  for (const auto& [share, said] : {std::pair{2.88, ": 100 % of the way"}, {-0.27, ": 0 % of the way"}}) {
+    made.diagnosis.share_of_way_to_floor = share;
+    EXPECT_THAT(verdict_text(made.of.bench, made.diagnosis, made.runs), HasSubstr(said));
+  }
 }
 
 TEST(DiagnosisPage, ShowsTheValueOfALevelOnce) {

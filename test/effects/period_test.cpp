@@ -39,6 +39,34 @@ TEST(Period, IsFoundBetweenTheStartsOfTheCatalogue) {
   }
 }
 
+/// Of commands that jump every 0.55 s, a wrong period may be in step at each jump of a beginning.
+TEST(Period, IsFoundWhereCommandsJump) {
+  const bench::Bench bench = test::pd_bench(true);
+  for (const double update_s : {0.0538, 0.0671}) {
+    calib::JointModel truth = prompt_joint();
+    truth.actuator.command.update_s = update_s;
+    std::vector<calib::SingleJoint> runs;
+    for (const calib::SingleJoint& joint : test::record(bench, truth, 6)) {
+      bench::BenchRun run = joint.run();
+      run.recording = {};
+      for (int k = 0; k < 500; ++k) {
+        const double t_s = 0.01 * k, jump = std::floor((t_s - 0.3) / 0.55);
+        run.recording.t_s.push_back(t_s);
+        run.recording.q_cmd_rad.push_back(t_s < 0.3 ? 0.0 : std::sin(2.0 * jump + static_cast<double>(runs.size())));
+        run.recording.q_rad.push_back(0.0);
+        run.recording.valid.push_back(true);
+      }
+      run.recording.q_rad = calib::SingleJoint(bench, run, joint.step_s()).rollout(truth);
+      runs.emplace_back(bench, run, joint.step_s());
+    }
+    const NestedFit fit(runs, 1);
+    double nearest_s = 1.0;
+    for (const double period_s : promising_periods_s(fit, prompt_joint(), "command.update_s", 0.02, 0.1))
+      nearest_s = std::min(nearest_s, std::abs(period_s - update_s));
+    EXPECT_LT(nearest_s, update_s * update_s / 20.0) << update_s << " s: a quarter out of step after 5 s";
+  }
+}
+
 TEST(Period, OfAHoldIsInStepWithItsStart) {
   const NestedFit fit = recorded_with(0.046);
   NestedModel current = fit.fit(prompt_joint(), {}, 0);

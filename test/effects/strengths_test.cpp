@@ -105,5 +105,21 @@ TEST(IntegrationPart, IsLittleOfAResidualThatAnotherEffectMade) {
   EXPECT_LT(part_of_a_coarse_step(truth), 2.0 * part_of_a_coarse_step(healthy()));
 }
 
+TEST(Limit, OfAnEffectIsWhereItIsNoneOrAnother) {
+  const bench::Bench bench = test::pd_bench(true);
+  const auto at = [&](const char* name, double calib::Unknown::*edge, double times) {
+    NestedModel model;
+    model.unknowns = {calib::unknown(name, bench)};
+    calib::set(model.model, name, times * model.unknowns.front().*edge);
+    return at_its_limit(model);
+  };
+  EXPECT_TRUE(at("transmission.stiffness_Nm_per_rad", &calib::Unknown::upper, 1.0)) << "a rigid shaft";
+  EXPECT_FALSE(at("transmission.stiffness_Nm_per_rad", &calib::Unknown::upper, 0.9));
+  EXPECT_FALSE(at("transmission.stiffness_Nm_per_rad", &calib::Unknown::lower, 1.0));
+  EXPECT_TRUE(at("thermal.torque_fade_s", &calib::Unknown::lower, 1.0)) << "a gain";
+  EXPECT_FALSE(at("thermal.torque_fade_s", &calib::Unknown::lower, 1.2));
+  EXPECT_FALSE(at("thermal.torque_fade_s", &calib::Unknown::upper, 1.0)) << "it fades evenly";
+}
+
 }  // namespace
 }  // namespace pmg::effects

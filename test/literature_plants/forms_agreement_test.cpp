@@ -127,6 +127,7 @@ std::vector<Pair> pairs() {
        }},
       {"OtherTorque", "drive.torque_scale",
        [](auto& m, auto& p) { m.drive.torque_factor = p.drive.torque_scale = 0.8; }},
+      {"OtherReadings", "sensor.angle_scale", [](auto& m, auto& p) { m.sensor.scale = p.sensor.angle_scale = 1.12; }},
       {"SaturatedCore", "drive.saturation_per_Nm",
        [](auto& m, auto& p) { m.drive.saturation_per_Nm = p.drive.saturation_per_Nm = 0.15; }},
       // A lag as long as the plants have them. Of 30 ms this loop is nearly unstable, and three lags in a row and a

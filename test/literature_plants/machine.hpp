@@ -114,8 +114,8 @@ struct Machine {
   } command;
 
   struct Sensor {
-    bool before_gear = false;  ///< on the motor's side of the shaft
-    double offset_rad = 0.0;
+    bool before_gear = false;               ///< on the motor's side of the shaft
+    double offset_rad = 0.0, scale = 1.0;   ///< shown angle: scale q + offset
     double offset_spread_rad = 0.0;         ///< another offset in each run (homing)
     double slip_rad = 0.0, slip_at = 1.0;   ///< from that share of the session on
     double drift_rad = 0.0, drift_s = 2.0;  ///< drift (1 - exp(-t / drift_s))

@@ -26,7 +26,7 @@ void Sensor::reset(double angle_rad) {
 double Sensor::carried_rad(double angle_rad) const { return angle_rad - behind_rad_; }
 
 double Sensor::shown_rad(double t_s, double at_rad) const {
-  double shown = at_rad + s_.offset_rad;
+  double shown = s_.scale * at_rad + s_.offset_rad;
   if (s_.drift_rad != 0.0) shown += s_.drift_rad * (1.0 - std::exp(-t_s / s_.drift_s));
   if (s_.eccentricity_rad != 0.0) {
     const double turn = s_.eccentricity_order * at_rad + s_.eccentricity_phase_rad;
@@ -54,7 +54,7 @@ void Sensor::follow(double t_s, double angle_rad, double speed_rad_s) {
   if (s_.play_form != SensorPlay::kRelay || s_.play_rad == 0.0 || std::abs(moved_rad) > kReversal_rad) {
     angle_rad_ = angle_rad;
   }
-  const Sample now{t_s, {shown_rad(t_s, carried_rad(angle_rad)), speed_rad_s}};
+  const Sample now{t_s, {shown_rad(t_s, carried_rad(angle_rad)), s_.scale * speed_rad_s}};
   if (past_.back().t_s > t_s - 1e-9)
     past_.back() = now;
   else

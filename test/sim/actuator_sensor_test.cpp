@@ -35,6 +35,23 @@ TEST(ActuatorSensor, ReadsAnEccentricSensorsAngleAndFindsTheJointBehindIt) {
   }
 }
 
+TEST(ActuatorSensor, ReadsAndFindsTheJointBehindReadingsOfAnotherScale) {
+  const auto parameters = with([](auto& p) {
+    p.sensor = {.zero_offset_rad = 0.02, .angle_scale = 1.1, .eccentricity_rad = 0.3, .eccentricity_phase_rad = 0.5};
+  });
+  const auto round = with([](auto& p) { p.sensor = {.zero_offset_rad = 0.02, .angle_scale = 1.1}; });
+  for (const double q_rad : {-3.0, -0.7, 0.0, 0.4, 2.5}) {
+    sim::ActuatorModel there(parameters, kActuatorStep_s);
+    there.reset(q_rad);
+    const double reading_rad = there.reading_rad(q_rad);
+    EXPECT_NEAR(reading_rad, 1.1 * q_rad + 0.02 + 0.3 * std::sin(q_rad + 0.5), 1e-12);
+    EXPECT_NEAR(sim::ActuatorModel::joint_rad(parameters, reading_rad, 0.0), q_rad, 1e-12);
+    EXPECT_NEAR(sim::ActuatorModel::joint_rad(round, 1.1 * q_rad + 0.02, 0.0), q_rad, 1e-12);
+  }
+  const auto folded = with([](auto& p) { p.sensor = {.angle_scale = 0.8, .eccentricity_rad = 0.9}; });
+  EXPECT_THROW(sim::ActuatorModel(folded, kActuatorStep_s), std::invalid_argument) << "the reading turns back";
+}
+
 TEST(ActuatorSensor, ReadsADiscThatIsNotRoundAndTurnsWithTheMotorsShaft) {
   const auto parameters = with([](auto& p) {
     p.sensor = {.eccentricity_rad = 0.08,

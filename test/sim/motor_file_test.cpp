@@ -44,7 +44,8 @@ TEST_F(MotorFile, HoldsEveryParameterExactly) {
   double number = 0.013;
   for (const model::ActuatorParameter& p : model::actuator_parameters()) p.in(all) = number *= 1.05;
   all.transmission.backlash_rad = 0.01;
-  all.sensor.lag_stages = 2.0;  // whole numbers only
+  all.sensor.angle_scale = 1.013;  // more than the disc wobbles
+  all.sensor.lag_stages = 2.0;     // whole numbers only
   write(motor_yaml({{joint_, all}, {robot_.joint_index.name(1), {}}}, {"made by a test"}));
   const ActuatorsByJoint read = read_motor_file(file_, robot_.joint_index);
   ASSERT_EQ(read.size(), 2U);

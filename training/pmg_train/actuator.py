@@ -123,7 +123,7 @@ class ActuatorModel:
         self.command_at_drive, self.error = told[0], told[0] - seen[0]
         if not enabled:
             return self.motor.idle(speed, unit)
-        output, speed_gain = self.law.step(told, seen, supply, self.sensor.prompt)
+        output, speed_gain = self.law.step(told, seen, supply, self.sensor.prompt_speed)
         return self.motor.step(output, speed_gain, self.law.standing_output(), supply, speed, unit)
 
     def _residual(self, kp, supply, enabled, temperature_C, angle, speed, driven) -> Given:

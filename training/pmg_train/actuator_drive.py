@@ -70,7 +70,8 @@ class AngleSensor:
         self.plays, self.quantises = has(p, "sensor.hysteresis_rad"), has(p, "sensor.quantum_rad")
         self.eccentric, self.elliptic = has(p, "sensor.eccentricity_rad"), has(p, "sensor.ellipticity_rad")
         self.refresh = Period(states, "refreshed_for", p["sensor.hold_s"], step_s)
-        self.prompt = ~self.lagging & ~self.velocity_lagging & (p["sensor.delay_s"] == 0) & self.refresh.every_step
+        prompt = ~self.lagging & ~self.velocity_lagging & (p["sensor.delay_s"] == 0) & self.refresh.every_step
+        self.prompt_speed = torch.where(prompt, p["sensor.angle_scale"], 0.0)
         self.line = DelayLine(states, "shown", p["sensor.delay_s"], step_s, 2)
         self.held = states.new("seen", 2)
         self.followed_at = states.new("sensor_at")
@@ -97,7 +98,7 @@ class AngleSensor:
         """(angle and speed at the beginning of the step) => (what the drive works with)."""
         p, h = self.p, self.step_s
         self.followed_at.copy_(self._followed(angle))
-        shown = self._shown(self.followed_at)
+        shown, speed = self._shown(self.followed_at), p["sensor.angle_scale"] * speed
         if self.line.used:
             shown, speed = self.line.push(torch.stack([shown, speed]))
         seen = self._quantised(shown)
@@ -124,7 +125,7 @@ class AngleSensor:
         return torch.maximum(torch.minimum(self.followed_at, angle + half), angle - half)
 
     def _shown(self, followed: torch.Tensor) -> torch.Tensor:
-        p, shown = self.p, followed + self.p["sensor.zero_offset_rad"]
+        p, shown = self.p, self.p["sensor.angle_scale"] * followed + self.p["sensor.zero_offset_rad"]
         if self.eccentric:
             turn = p["sensor.eccentricity_order"] * followed + p["sensor.eccentricity_phase_rad"]
             shown = shown + p["sensor.eccentricity_rad"] * torch.sin(turn)
@@ -154,7 +155,7 @@ class ControlLaw:
         for state in (self.held, self.of_position, self.asleep):
             put(state, torch.zeros_like(state))
 
-    def step(self, told, seen, supply, prompt) -> tuple[torch.Tensor, torch.Tensor]:
+    def step(self, told, seen, supply, prompt_speed) -> tuple[torch.Tensor, torch.Tensor]:
         """The output, and by how much [output per rad/s] a change of speed within the step lowers it."""
         p, every_step, due = self.p, self.hold.every_step, self.hold.due()
         q_des, dq_des, kp, kd, feed_forward_Nm = told
@@ -163,7 +164,7 @@ class ControlLaw:
         forward = feed_forward_Nm / (p["drive.torque_per_unit_Nm"] * supply)
         of_position = p["drive.kp_scale"] * kp * self._beyond_dead_band(q_des - seen[0], due)
         wish = of_position + kd * (dq_des - seen[1]) + forward
-        follows = prompt & every_step
+        follows = every_step
         if self.output_dead_band:
             band = p["drive.output_dead_band"]
             wish = wish - clamped(wish, band)
@@ -171,7 +172,7 @@ class ControlLaw:
         within = clamped(wish, p["drive.limit"])
         self.held.copy_(torch.where(due, within, self.held) if self.hold.used else within)
         self.of_position.copy_(torch.where(due, of_position, self.of_position) if self.hold.used else of_position)
-        return self.held, torch.where(follows & (within == wish), kd, 0.0)
+        return self.held, torch.where(follows & (within == wish), prompt_speed * kd, 0.0)
 
     def standing_output(self) -> torch.Tensor:
         """What the output would be without its position error."""
