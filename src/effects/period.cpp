@@ -23,8 +23,9 @@ constexpr double kFirstPeriods = 16.0;      // of a beginning's length
 /// must explain more than a wrong one that is in step where the commands jump.
 constexpr double kOutOfStep_periods = 0.15;
 constexpr double kCoarsest = 0.01, kFinest = 0.003;  // of a period: the same, limited
+constexpr double kShort_s = 0.02;                    // shorter periods lie kCoarsest apart: they would be a thousand
 constexpr double kApart = 0.045;                     // of a period: those that are followed
-constexpr std::size_t kFollowed = 24, kStarts = 3;   // at first, and at the end
+constexpr std::size_t kFollowed = 16, kStarts = 3;   // at first, and at the end
 
 /// A period, and the squares of a beginning's residuals with it as a share of those without it.
 struct TriedPeriod {
@@ -90,6 +91,11 @@ class Beginnings {
   std::map<double, Beginning> of_length_;
 };
 
+/// Of the first grid, as a share of the period.
+double grid_step(double period_s, double length_s) {
+  return period_s < kShort_s ? kCoarsest : std::clamp(kOutOfStep_periods * period_s / length_s, kFinest, kCoarsest);
+}
+
 /// The best periods that lie apart by more than this share.
 std::vector<TriedPeriod> best_apart(std::vector<TriedPeriod> all, double share, std::size_t most) {
   std::stable_sort(all.begin(), all.end(), explains_more);
@@ -114,7 +120,7 @@ std::vector<double> promising_periods_s(const NestedFit& fit, const calib::Joint
   for (double period_s = low_s; period_s <= high_s;) {
     const double length_s = beginnings.length_s(period_s, kFirstPeriods);
     tried.push_back(beginnings.tried(period_s, length_s));
-    period_s *= 1.0 + std::clamp(kOutOfStep_periods * period_s / length_s, kFinest, kCoarsest);
+    period_s *= 1.0 + grid_step(period_s, length_s);
   }
   // Each time on runs twice as long, half as many of them stay.
   std::vector<TriedPeriod> best = best_apart(std::move(tried), kApart, kFollowed);
@@ -123,15 +129,13 @@ std::vector<double> promising_periods_s(const NestedFit& fit, const calib::Joint
     whole = true;
     for (TriedPeriod& one : best) {
       const double length_s = beginnings.length_s(one.period_s, periods);
-      const double step =
-          finer * std::clamp(kOutOfStep_periods * one.period_s / beginnings.length_s(one.period_s, kFirstPeriods),
-                             kFinest, kCoarsest);
+      const double step = finer * grid_step(one.period_s, beginnings.length_s(one.period_s, kFirstPeriods));
       whole = whole && length_s >= beginnings.longest_s();
       one = std::min({beginnings.tried(one.period_s, length_s), beginnings.tried(one.period_s * (1.0 - step), length_s),
                       beginnings.tried(one.period_s * (1.0 + step), length_s)},
                      explains_more);
     }
-    best = best_apart(std::move(best), 0.0, std::max(kStarts, best.size() / 2));
+    best = best_apart(best, 0.0, std::max(kStarts, best.size() / 2));
   }
   std::vector<double> found;
   for (const TriedPeriod& one : best) found.push_back(one.period_s);
