@@ -30,7 +30,7 @@ std::string in_its_place(const std::string& other, const effects::SeenSeparation
       apart.deviations < 0.0 ? "better" : "worse", std::abs(apart.deviations), apart.blocks);
   if (apart.deviations < enough.deviations) return fmt::format("{}; {:.0f} would tell", fits, enough.deviations);
   if (apart.blocks < enough.blocks) return fmt::format("{}; {} half-seconds would tell", fits, enough.blocks);
-  return fmt::format("{}, but by less than half of what it should", fits);
+  return fmt::format("{}, but by less than {:.0f} % of what it should", fits, 100.0 * enough.share_of_expected);
 }
 
 class Explaining {

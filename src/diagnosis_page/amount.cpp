@@ -38,7 +38,9 @@ bool is_scale(std::string_view name) { return name.ends_with("_scale"); }
 
 /// Parameters without a unit are of several kinds.
 InWorkshop of_a_share(std::string_view name) {
-  if (is_scale(name)) return {"%", [](double value) { return 100.0 * (value - 1.0); }};
+  if (is_scale(name))
+    return {name == "sensor.angle_scale" ? "% in its readings" : "%",
+            [](double value) { return 100.0 * (value - 1.0); }};
   if (name.starts_with("friction.load_")) return times(100.0, "% of the torque that it carries");
   return times(100.0, "%");
 }

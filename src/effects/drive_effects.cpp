@@ -43,7 +43,7 @@ std::vector<Effect> drive_effects() {
                      where(regulates_current, each({0.5, 0.8}, peak_torque)))},
        .shows = "fast motion lags however high the gain",
        .needs = "large steps",
-       .workshop = {"too little torque at high speed",
+       .workshop = {"too little torque in hard or fast motion",
                     "Measure the supply voltage while the joint moves fast. Check the current limit of the drive, and "
                     "that the motor is of the right type.",
                     "Fast motion under load falls short: a step that should catch the robot may be too slow."},

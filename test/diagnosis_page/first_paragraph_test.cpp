@@ -103,6 +103,7 @@ TEST(FirstParagraph, SaysHowMuchInUnitsOfAWorkshop) {
               HasSubstr("friction that grows with speed (1.5 times what the simulation has)"));
   EXPECT_THAT(said("gain", "drive.torque_scale", {0.78, 0.7, 1.06}), HasSubstr("(-22 %, between -30 and 6)"));
   EXPECT_THAT(said("gain", "drive.torque_scale", {1.25, 1.25, 1.25}), HasSubstr("(+25 %)"));
+  EXPECT_THAT(said("gain", "sensor.angle_scale", {1.09, 1.09, 1.09}), HasSubstr("(+9 % in its readings)"));
   EXPECT_THAT(said("rate_limit", "command.rate_limit_rad_s", {2.0, 2.0, 2.0}), HasSubstr("(at most 115 degrees/s)"));
   EXPECT_THAT(said("load_friction", "friction.load_driving", {0.13, 0.13, 0.13}),
               HasSubstr("(13 % of the torque that it carries)"));
