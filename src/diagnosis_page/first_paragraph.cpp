@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <map>
-#include <numbers>
 #include <set>
 #include <vector>
 
@@ -22,37 +21,32 @@ using diagnosis::Diagnosis;
 
 std::string recordings(int count) { return fmt::format("{} recording{}", count, count == 1 ? "" : "s"); }
 
+/// "a, b or c" with ", " between and " or " before the last.
+std::string listed(const std::vector<std::string>& texts, const char* between, const char* before_last) {
+  std::string text;
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    if (i > 0) text += i + 1 == texts.size() ? before_last : between;
+    text += texts[i];
+  }
+  return text;
+}
+
 /// The cause with its size, and every name that it may have as well.
 std::string with_other_names(const bench::Bench& bench, const Diagnosis& diagnosis, const Cause& cause) {
   std::vector<std::string> names{effects::workshop_words(cause.effect).what};
   if (const std::string size = amount(bench, diagnosis, cause); !size.empty()) names[0] += " (" + size + ")";
   for (const std::string& other : cause.or_instead) names.push_back(effects::workshop_words(other).what);
   for (const std::string& other : cause.same_here) names.push_back(effects::workshop_words(other).what);
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (i > 0) text += i + 1 == names.size() ? " or " : ", ";
-    text += names[i];
-  }
-  return text;
+  return listed(names, ", ", " or ");
 }
 
-enum class Which { kAll, kSure, kOpen };
-
-bool belongs(const Cause& cause, Which which) {
-  return which == Which::kAll || cause.or_instead.empty() == (which == Which::kSure);
-}
-
-std::string causes_text(const bench::Bench& bench, const Diagnosis& diagnosis, Which which) {
+/// The causes that may be another effect, or those that may not.
+std::string causes_text(const bench::Bench& bench, const Diagnosis& diagnosis, bool open) {
   std::vector<std::string> texts;
   for (const Cause& cause : diagnosis.causes) {
-    if (belongs(cause, which)) texts.push_back(with_other_names(bench, diagnosis, cause));
+    if (cause.or_instead.empty() != open) texts.push_back(with_other_names(bench, diagnosis, cause));
   }
-  std::string text;
-  for (std::size_t i = 0; i < texts.size(); ++i) {
-    if (i > 0) text += i + 1 == texts.size() ? "; and " : "; ";
-    text += texts[i];
-  }
-  return text;
+  return listed(texts, "; ", "; and ");
 }
 
 bool some(const Diagnosis& diagnosis, std::vector<std::string> Cause::*names) {
@@ -81,13 +75,10 @@ std::string on_what(const Diagnosis& diagnosis) {
 
 /// The causes; which of them are sure, and which open.
 std::string has(const bench::Bench& bench, const Diagnosis& diagnosis) {
-  if (!some(diagnosis, &Cause::or_instead))
-    return fmt::format("This joint has {}.", causes_text(bench, diagnosis, Which::kAll));
-  std::string text;
-  if (const std::string sure = causes_text(bench, diagnosis, Which::kSure); !sure.empty())
-    text = fmt::format("Sure: this joint has {}. ", sure);
-  return text + fmt::format("Open: it has {}. Where it says \"or\", these recordings don't tell which.",
-                            causes_text(bench, diagnosis, Which::kOpen));
+  const std::string sure = causes_text(bench, diagnosis, false), open = causes_text(bench, diagnosis, true);
+  if (open.empty()) return fmt::format("This joint has {}.", sure);
+  return fmt::format("{}Open: it has {}. Where it says \"or\", these recordings don't tell which.",
+                     sure.empty() ? "" : fmt::format("Sure: this joint has {}. ", sure), open);
 }
 
 std::string what_every_assembly_has(const bench::Bench& bench, const Diagnosis& diagnosis) {
