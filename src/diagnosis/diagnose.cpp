@@ -45,8 +45,10 @@ class JointDiagnosisRun {
     const bool differ =
         tell_assemblies(fitted, scored, searched(fitted).fit(base.model, base.unknowns, 0), base, false);
     const effects::NestedFit all(fitted, options_.threads), fit = searched(fitted);
+    SearchLimits limits = search_limits(by_, std::pow(diagnosis_.noise_floor.rms_rad, 2), !options_.model);
+    limits.recordings_have_step = diagnosis_.step.limit == calib::StepLimit::kResidual;
     EffectSearch search(
-        bench_, fit, base, search_limits(by_, std::pow(diagnosis_.noise_floor.rms_rad, 2), !options_.model),
+        bench_, fit, base, limits,
         direct_evidence(checks_, base.model.actuator, diagnosis_.noise_floor.rms_rad, base.scale.speed_rad_s, by_), by_,
         {.report = [this](double, std::string_view doing) { report(share_ + 0.02 * (0.9 - share_), doing); },
          .interrupted = progress_.interrupted});

@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
+#include "calib/step_choice.hpp"
 #include "diagnosis/effect_search.hpp"
 #include "effects/catalogue.hpp"
 #include "effects/strengths.hpp"
@@ -239,11 +241,34 @@ std::optional<Extension> EffectSearch::with_a_constant_asked_for(const Extension
   return std::nullopt;
 }
 
+/// (extension, comparison with it without an effect, the integrator's error at it) => why the effect mends this error,
+/// or "". Costs two fits at half the step where the effect explains less than the error.
+std::string EffectSearch::made_of_step(const Extension& chosen, const Trial& last, double step_error_rad) {
+  const Extension& without = refit_without(chosen, last.effect);
+  const double gain = without.fitted.squares - chosen.fitted.squares;
+  const bool large = gain > std::pow(step_error_rad, 2) * fit_.blocks().all_samples();
+  if (large || !(gain > 0.0) || !std::isfinite(step_error_rad) || !going("fitting at half the step")) return "";
+  const effects::NestedFit finer(calib::with_step(bench_, fit_.runs(), 0.5 * fit_.runs().front().step_s()),
+                                 fit_.threads());
+  const auto squares = [&](const Extension& extension) {
+    return finer.fit(extension.fitted.model, extension.fitted.unknowns, static_cast<int>(options_.few_iterations))
+        .squares;
+  };
+  const double stays = (squares(without) - squares(chosen)) / gain;
+  if (stays > options_.stays_at_half_step) return "";
+  return fmt::format("it explains less than the simulation's step is off: with half the step {:.0f} % of its gain stay",
+                     100.0 * std::max(0.0, stays));
+}
+
 Settled EffectSearch::settled(Extension chosen) {
   for (;;) {
     (void)going("fitting with what is known of the simulation's numbers");
     Extension with_priors = refit_with_priors(chosen);
     if (with_priors.fitted.squares < options_.settled_squares * chosen.fitted.squares) chosen = with_priors;
+    const double step_error_rad =
+        limits_.recordings_have_step || chosen.effects.empty()
+            ? 0.0
+            : calib::integration_error(bench_, fit_.runs(), chosen.fitted.model, fit_.threads()).rms_rad;
     std::string weakest, why;
     double least = std::numeric_limits<double>::infinity();
     for (const std::string& name : chosen.effects) {
@@ -253,6 +278,7 @@ Settled EffectSearch::settled(Extension chosen) {
       std::string against =
           last.comparison.log_gain > 0.0 ? doubt(last) : "runs left out are predicted no better with it";
       if (against.empty()) against = unsure(name, with_priors.forms, with_priors.fitted);
+      if (against.empty()) against = made_of_step(chosen, last, step_error_rad);
       if (against.empty()) against = made_of_constant(chosen, without, name);
       if (against.empty() || last.comparison.log_gain >= least) continue;
       least = last.comparison.log_gain;

@@ -27,6 +27,11 @@ calib::JointModel both(const effects::ScreenedPair& pair) {
   return model;
 }
 
+/// The two effects that were added last.
+std::pair<std::string, std::string> newest(const Extension& pair) {
+  return {*std::prev(pair.effects.end(), 2), pair.effects.back()};
+}
+
 /// True if the two have a parameter in common or one is the other's special case.
 bool are_related(const effects::EffectStart& a, const effects::EffectStart& b) {
   const std::vector<std::string>&of_a = form(a).parameters, &of_b = form(b).parameters;
@@ -54,8 +59,39 @@ std::string EffectSearch::objection_to_pair(const Extension& pair, const std::st
   return "";
 }
 
+std::optional<Extension> EffectSearch::as_special_case(const Extension& from, const std::string& effect) const {
+  const std::vector<std::string> strengths = effects::strengths(effect, from.forms);
+  const bool ended_there = std::any_of(strengths.begin(), strengths.end(), [&](const std::string& parameter) {
+    return calib::value(from.fitted.model, parameter) == calib::value(base_.model, parameter);
+  });
+  if (!ended_there) return std::nullopt;
+  const std::vector<std::string>& known = effects::form_of(effect, from.forms).parameters;
+  std::optional<Extension> best;
+  for (const std::string& name : effects::effect(effect).contains) {
+    if (effects::contains(from.effects, name)) continue;
+    Extension special{from.effects, {}, {}, from.forms, {}};
+    std::replace(special.effects.begin(), special.effects.end(), effect, name);
+    special.forms.erase(effect);
+    const std::vector<effects::Form>& forms = effects::effect(name).forms;
+    for (std::size_t f = 0; f < forms.size(); ++f) {
+      const std::vector<std::string>& needed = forms[f].parameters;
+      if (!std::all_of(needed.begin(), needed.end(), [&](const auto& one) { return effects::contains(known, one); }))
+        continue;
+      special.forms[name] = f;
+      calib::JointModel start = fits_.without(from.fitted.model, effect, special.effects, special.forms);
+      for (const effects::FixedValue& fixed : forms[f].fixed) calib::set(start, fixed.parameter, fixed.value);
+      special.fitted =
+          fit_.fit(start, fits_.unknowns(special.effects, special.forms), static_cast<int>(options_.few_iterations));
+      if (!best || special.fitted.squares < best->fitted.squares) best = special;
+    }
+  }
+  if (best) best = extend(best->effects, best->forms, best->fitted.model);
+  return best;
+}
+
 /// (extension that no single effect improves) => (the same with the best pair of effects of which each is convincing
-/// beside the other; nothing if there is none). Costs a look at every effect, some short fits, and three to their end.
+/// beside the other; nothing if there is none). Costs a look at every effect, short fits of thirty pairs, and some to
+/// their end.
 std::optional<Extension> EffectSearch::with_pair(const Extension& current) {
   std::vector<effects::EffectStart> starts;
   for (const effects::Effect& one : effects::catalogue()) {
@@ -66,11 +102,11 @@ std::optional<Extension> EffectSearch::with_pair(const Extension& current) {
   const effects::StartScreen& screen = look_at(current).screen;
   std::vector<effects::ScreenedPair> pairs = effects::screened_pairs(screen, starts);
   std::erase_if(pairs, [](const auto& pair) { return are_related(*pair.first, *pair.second); });
-  std::vector<std::pair<Extension, effects::ScreenedPair>> fitted;
-  std::set<std::pair<const effects::Effect*, const effects::Effect*>> seen;
+  std::vector<Extension> fitted;
+  std::set<std::pair<const effects::Form*, const effects::Form*>> seen;
   for (const effects::ScreenedPair& pair : pairs) {
     if (seen.size() >= static_cast<std::size_t>(options_.fitted_pairs)) break;
-    if (!seen.emplace(pair.first->effect, pair.second->effect).second) continue;
+    if (!seen.emplace(&form(*pair.first), &form(*pair.second)).second) continue;
     if (!going(fmt::format("fitting {} and {}", pair.first->effect->title, pair.second->effect->title)))
       return std::nullopt;
     Extension extension{current.effects, {}, {}, current.forms, {}};
@@ -80,18 +116,30 @@ std::optional<Extension> EffectSearch::with_pair(const Extension& current) {
     }
     extension.fitted = fit_.fit(both(pair), fits_.unknowns(extension.effects, extension.forms),
                                 static_cast<int>(options_.few_iterations), &screen.jacobian());
-    fitted.emplace_back(std::move(extension), pair);
+    fitted.push_back(std::move(extension));
   }
   std::stable_sort(fitted.begin(), fitted.end(),
-                   [](const auto& a, const auto& b) { return a.first.fitted.squares < b.first.fitted.squares; });
-  fitted.resize(std::min<std::size_t>(fitted.size(), 2));
+                   [](const Extension& a, const Extension& b) { return a.fitted.squares < b.fitted.squares; });
+  fitted.resize(std::min(fitted.size(), static_cast<std::size_t>(options_.finished_pairs)));
   std::optional<Extension> best;
-  for (const auto& [few, pair] : fitted) {
-    Extension extension = extend(few.effects, few.forms, few.fitted.model);
-    if (best && compared(*best, extension).log_gain <= 0.0) continue;
-    if (!(compared(current, extension).log_gain > 0.0)) continue;
-    const std::string why = objection_to_pair(extension, pair.first->effect->name, pair.second->effect->name);
-    if (why.empty()) best = std::move(extension);
+  const auto better = [&](const Extension& one) {
+    return compared(current, one).log_gain > 0.0 && (!best || compared(*best, one).log_gain > 0.0);
+  };
+  for (const Extension& few : fitted) {
+    Extension pair = extend(few.effects, few.forms, few.fitted.model);
+    for (const std::string& name : {newest(pair).first, newest(pair).second}) {
+      if (std::optional<Extension> special = as_special_case(pair, name)) pair = *std::move(special);
+    }
+    const auto [first, second] = newest(pair);
+    if (better(pair) && objection_to_pair(pair, first, second).empty()) {
+      best = pair;
+      continue;
+    }
+    // Beside another effect, a fit may have come to where one of the two does all alone.
+    for (const auto& [left, stays] : {std::pair(first, second), std::pair(second, first)}) {
+      const Extension& single = refit_without(pair, left);
+      if (better(single) && objection(trial(current, single, stays)).empty()) best = single;
+    }
   }
   return best;
 }

@@ -42,6 +42,8 @@ struct SearchLimits {
   /// Lower limits: an effect's amplitude as a share of the noise, and of the initial residual; its gain as a share of
   /// the residual above a correct model's.
   double of_noise, of_beginning, of_rest;
+  /// A finer step leaves no lower residual: the recordings have this step, and no error of it.
+  bool recordings_have_step = false;
 };
 
 /// from_scratch: without a model several effects are missing, so weaker ones must be found beside stronger ones.
@@ -89,6 +91,11 @@ class EffectSearch {
   /// Effects that were chosen and left again, with the reason.
   const std::vector<std::pair<std::string, std::string>>& left_out() const { return left_out_; }
 
+  /// (extension, its effect) => (the effect's special case in its place, where the effect ended at it, fitted; in the
+  /// form that explains the most of those of which the effect has all parameters). A play of zero is a shaft that
+  /// bends.
+  std::optional<Extension> as_special_case(const Extension& from, const std::string& effect) const;
+
   /// The effect's parameter as read off the recordings; null where it is not.
   const MeasuredCause* measured(const std::string& effect) const;
   /// A model-free check detects the effect, not its size.
@@ -128,6 +135,7 @@ class EffectSearch {
   void free_constant(const calib::Unknown& constant, const Extension& with);
   std::optional<Extension> with_a_constant_asked_for(const Extension& chosen);
   std::string made_of_constant(const Extension& chosen, const Extension& without, const std::string& effect);
+  std::string made_of_step(const Extension& chosen, const Trial& last, double step_error_rad);
   Extension extend(const std::vector<std::string>& effects, const effects::Forms& forms,
                    const calib::JointModel& start) const;
   Trial trial(const Extension& without, const Extension& with, const std::string& effect) const;

@@ -59,6 +59,11 @@ struct JointDiagnosisOptions {
       kPlants};
   work::Threshold regained_share{
       0.5, "", "a fit without the newest effect that regains this share of its gain was not at its end", kPlants};
+  work::Threshold stays_at_half_step{
+      0.5, "",
+      "an effect that explains less than the integrator's error is taken if half the step leaves this share of its "
+      "gain: what mends an error of first order loses three quarters",
+      "arithmetic"};
   work::CountThreshold most_effects{6, "", "effects that one joint may have", kAssumed};
   // When two effects are told apart.
   work::Threshold apart_deviations{
@@ -122,9 +127,11 @@ struct JointDiagnosisOptions {
                                       kCost};
   work::CountThreshold exchanged_effects{5, "", "effects that are fitted in the place of a cause", kCost};
   work::CountThreshold fitted_pairs{
-      5, "", "pairs of effects that are fitted where no single effect explains a rest, the best by their linearisation",
+      30, "",
+      "pairs of effects that are fitted where no single effect explains a rest, the best by their linearisation",
       kCost};
-  work::CountThreshold finished_effects{3, "", "of these, fits that are continued to their end", kCost};
+  work::CountThreshold finished_pairs{4, "", "pairs whose fits are continued to their end", kCost};
+  work::CountThreshold finished_effects{3, "", "effects whose fits are continued to their end", kCost};
   work::Threshold worth_finishing{0.4, "", "share of the best gain from which a fit is continued", kCost};
   work::Threshold worth_fitting_form{
       0.7, "", "a further form of an effect is fitted if its start explains this share of what the best start explains",
@@ -143,14 +150,14 @@ struct JointDiagnosisOptions {
 
   PMG_THRESHOLDS(least_deviations, least_folds_won, amplitude_of_noise, amplitude_of_beginning, gain_of_rest,
                  scratch_amplitude_of_noise, scratch_amplitude_of_beginning, scratch_gain_of_rest, nearly_all_of_rest,
-                 worse_deviations, one_torque, equal_gain, clearly_deviations, regained_share, most_effects,
-                 apart_deviations, apart_share, fewest_apart_blocks, visible_share, better_form_deviations,
-                 hopeless_form_deviations, remains_of_noise, remains_of_beginning, coarser_quantum, quantum_of_noise,
-                 gain_tolerance, damping_tolerance, friction_tolerance, load_tolerance, deviation_of_tolerance,
-                 constant_gain_of_rest, stiffer_presliding, softer_presliding, intervals, enough_deviations,
-                 most_asked_runs, most_asked_recordings, searched_runs, fitted_effects, exchanged_effects, fitted_pairs,
-                 finished_effects, worth_finishing, worth_fitting_form, few_iterations, many_iterations,
-                 settled_squares, assembly, odd_runs, step, signatures, extension)
+                 worse_deviations, one_torque, equal_gain, clearly_deviations, regained_share, stays_at_half_step,
+                 most_effects, apart_deviations, apart_share, fewest_apart_blocks, visible_share,
+                 better_form_deviations, hopeless_form_deviations, remains_of_noise, remains_of_beginning,
+                 coarser_quantum, quantum_of_noise, gain_tolerance, damping_tolerance, friction_tolerance,
+                 load_tolerance, deviation_of_tolerance, constant_gain_of_rest, stiffer_presliding, softer_presliding,
+                 intervals, enough_deviations, most_asked_runs, most_asked_recordings, searched_runs, fitted_effects,
+                 exchanged_effects, fitted_pairs, finished_pairs, finished_effects, worth_finishing, worth_fitting_form,
+                 few_iterations, many_iterations, settled_squares, assembly, odd_runs, step, signatures, extension)
 };
 
 /// Every row of both by its name for --set: a joint's as they are, the data's as "data_faults.NAME".

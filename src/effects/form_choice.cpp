@@ -72,9 +72,11 @@ Extension in_best_form(const ExtensionFits& fits, const Extension& current, cons
   const auto best =
       std::min_element(tried.begin(), tried.end(), [&](const auto& a, const auto& b) { return level(a) < level(b); });
   const auto chosen = std::find_if(tried.begin(), tried.end(), [&](const auto& one) {
-    return fits.compare()(one.second.held_out, best->second.held_out).deviations < limits.better_deviations;
+    return one.first == best->first ||
+           fits.compare()(one.second.held_out, best->second.held_out).deviations < limits.better_deviations;
   });
   Extension found = chosen->second;
+  found.open_forms = current.open_forms;
   std::vector<OpenForm>& open = found.open_forms[effect_name];
   open.clear();
   for (const auto& [form, other] : tried) {

@@ -281,6 +281,33 @@ TEST_F(Rules, TwoEffectsThatNoSingleOneBetraysAreFoundTogether) {
   for (const Cause& cause : diagnose(bench, options).causes) EXPECT_NE(cause.effect, "offset");
 }
 
+/// Beside another effect that isn't there.
+TEST_F(Rules, AnEffectThatOnlyAPairBetraysIsTakenAlone) {
+  calib::JointModel truth;
+  truth.actuator = healthy_actuator();
+  truth.actuator.sensor.lag_s = 0.02;  // no check looks for a lag
+  DiagnoseOptions options = given_healthy();
+  options.decide_by.fitted_effects = 0.0;  // no effect is tried alone
+  const Diagnosis found = diagnose(written(test::record(bench_, truth, 4, 2e-4)), options);
+  ASSERT_EQ(found.causes.size(), 1U);
+  EXPECT_EQ(found.causes.front().effect, "sensor_lag");
+}
+
+TEST_F(Judged, APlayOfZeroIsAShaftThatBends) {
+  const EffectSearch at = search();
+  calib::JointModel start = truth_;
+  start.actuator.transmission.stiffness_Nm_per_rad = 400.0;
+  start.actuator.transmission.damping_Nm_s_per_rad = 1.0;
+  Extension play{{"backlash"}, fit_->fit(start, {}, 0), {}, {{"backlash", 1}}, {}};
+  const std::optional<Extension> special = at.as_special_case(play, "backlash");
+  ASSERT_TRUE(special);
+  EXPECT_EQ(special->effects, (std::vector<std::string>{"compliance"}));
+  EXPECT_LE(special->fitted.squares, play.fitted.squares);
+  calib::set(play.fitted.model, "transmission.backlash_rad", 0.01);
+  EXPECT_FALSE(at.as_special_case(play, "backlash")) << "it has a play";
+  EXPECT_FALSE(at.as_special_case(extension(at, "offset", 0.0), "offset")) << "it contains no other";
+}
+
 /// Two names of one torque where friction varies neither with speed nor with load: no recording parts them.
 TEST_F(Rules, NamesThatNoRecordingPartsBecomeOneCause) {
   calib::JointModel truth;

@@ -4,7 +4,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "diagnosis/base_model.hpp"
 #include "diagnosis/diagnosis_json.hpp"
+#include "diagnosis/effect_search.hpp"
 #include "diagnosis/rules_fixture.hpp"
 #include "effects/catalogue.hpp"
 #include "evidence/thresholds.hpp"
@@ -93,6 +95,42 @@ TEST_F(Rules, AnIntervalCountsTheErrorOfTheStep) {
   const evidence::Interval interval = delay->parameters.front().estimate;
   EXPECT_GT(interval.value, 0.021) << "as it fits with such steps";
   EXPECT_LT(interval.low, 0.02);
+}
+
+/// A joint without any step, simulated with steps of 4 ms: these move as half a step of delay does.
+class SimulatedCoarsely : public Rules {
+ protected:
+  /// Why the last look leaves the delay of the fit with one; "" if it stays.
+  std::string why_no_delay(double delay_s, bool recordings_have_step) const {
+    calib::JointModel truth;
+    truth.actuator = healthy_actuator();
+    truth.actuator.command.delay_s = delay_s;
+    constexpr double kSensorNoise_rad = 2e-5, kForgiven_rad = 0.02;  // the search doesn't go on without the delay
+    std::vector<calib::SingleJoint> runs;
+    for (const calib::SingleJoint& joint : test::record(bench_, truth, 4, kSensorNoise_rad, 1, 1e-4))
+      runs.emplace_back(bench_, joint.run(), 4e-3);
+    const effects::NestedFit fit(runs, 1);
+    const BaseModel base = base_model(bench_, given_healthy().model, fit, {}, kForgiven_rad * kForgiven_rad, 1);
+    const SearchLimits limits{.noise_squares = kForgiven_rad * kForgiven_rad,
+                              .healthy_squares = 0.0,
+                              .of_noise = 0.0,
+                              .of_beginning = 0.0,
+                              .of_rest = 0.0,
+                              .recordings_have_step = recordings_have_step};
+    EffectSearch search(bench_, fit, base, limits, {}, {}, {});
+    for (const Trial& trial : search.additions(search.base())) {
+      if (trial.effect != "delay") continue;
+      const bool stays = !search.settled(trial.extension).chosen.effects.empty();
+      return stays || search.left_out().empty() ? "" : search.left_out().front().second;
+    }
+    return "it was not fitted";
+  }
+};
+
+TEST_F(SimulatedCoarsely, AJointHasNoCauseThatMendsTheStep) {
+  EXPECT_NE(why_no_delay(0.0, false).find("half the step"), std::string::npos);
+  EXPECT_EQ(why_no_delay(0.0, true), "") << "the recordings have this step: the delay is theirs";
+  EXPECT_EQ(why_no_delay(3e-3, false), "") << "half the step leaves most of its gain";
 }
 
 /// Four runs of the joint on a rig whose table shakes.
