@@ -215,7 +215,7 @@ bench::Bench examined(const bench::Bench& bench, const Arguments& arguments, con
   const data_faults::Examination found =
       data_faults::examine(bench, {arguments.fit, arguments.score}, std::nullopt, options, arguments.threads, progress);
   worth = data_faults::worth_of(found);
-  if (found.handling == data_faults::Handling::kLeaveOut && found.uncorrected())
+  if (found.handling == data_faults::Handling::kLeaveOut && !found.corrected.empty())
     throw std::invalid_argument(fmt::format(
         "{}: {}; mend the files, or fit the corrected data: --data-faults correct (docs/how-to/diagnosis.md)",
         bench.folder.string(), worth.reservations().front().why));

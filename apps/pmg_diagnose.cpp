@@ -90,8 +90,8 @@ void declare(CLI::App& app, Arguments& arguments) {
   app.add_option("--score", arguments.score, "rows to judge the result by, once; none of them may be fitted");
   app.add_option(
          "--data-faults", arguments.data_faults,
-         "faulty data: leave-out (single faulty runs are left out, the rest stays as it is), correct (go on with the "
-         "corrections) or keep")
+         "faulty data: leave-out (faulty runs are left out; what all runs share is corrected), correct (every fault is "
+         "corrected) or keep")
       ->check(CLI::IsMember({"leave-out", "correct", "keep"}))
       ->capture_default_str();
   app.add_option("--seed", arguments.seed, "of the bootstrap")->capture_default_str();

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/fit_results.hpp"
 #include "data_faults/column_checks.hpp"
 #include "data_faults/position_checks.hpp"
 #include "data_faults/row_checks.hpp"
@@ -162,6 +163,11 @@ std::vector<DataFault> commanded_torque_fault(const Examined& e) {
   const double least = share * std::log(o.feed_forward_gain);
   const Unit unit = unit_of(e, best.factor);
   if (best.factor == 0.0 || harmless(unit) || as_is.loss - best.loss < least) return {};
+  // A torque that is next to nothing explains a joint that sticks.
+  double at_rest = 0.0;
+  for (const calib::SingleJoint& joint : joints)
+    at_rest += log_error_standing_still(joint) / static_cast<double>(joints.size());
+  if (best.loss > at_rest + std::log(calib::kExplainedShare)) return {};
   // What one effect of the catalogue explains, too, is physics.
   if (e.model().with_best_effect(joints, as_is.fit).loss - best.loss < least) return {};
   DataFault fault = fault_of(e, unit, {});
@@ -185,7 +191,7 @@ void try_commanded_torque(const Examined& e, std::size_t run, std::vector<Explai
     DataFault fault = fault_of(e, unit, {file});
     const double after = data_faults::log_error_with(e, run, fault.fixes.front());
     fault.evidence = {gain_text(e, before, after)};
-    bool sure = before - after > std::log(e.options().clear_gain) && mends(e, before, after);
+    bool sure = before - after > std::log(e.options().clear_gain) && mends(e, run, before, after);
     // A run in another load's row needs another torque, too.
     if (fault.kind == Kind::kUnit) sure = sure && after < lowest_log_error_of_rows(e, run);
     into.push_back({fault, before - after, sure});

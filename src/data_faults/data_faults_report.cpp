@@ -44,7 +44,7 @@ void add_to(Json& whole, const Examination& examination) {
   }
   whole["data_faults"] = found;
   whole["data_faults_handled"] = {{"by", name(examination.handling)},
-                                  {"corrected", examination.corrected},
+                                  {"corrected", !examination.corrected.empty()},
                                   {"left_out", examination.left_out},
                                   {"verdict_of_faulty_data", examination.uncorrected()}};
   whole["data_fault_options"] = evidence::thresholds_json(examination.options);
@@ -52,17 +52,16 @@ void add_to(Json& whole, const Examination& examination) {
 
 std::string handling_text(const Examination& examination) {
   if (examination.faults.empty()) return "";
-  if (examination.corrected) return "The verdict is of the corrected data.";
+  if (examination.uncorrected())
+    return "The verdict is of data with faults, as --data-faults keep asks for: don't trust it. Mend the files.";
   std::string text;
   if (!examination.left_out.empty()) {
     text = fmt::format("The verdict leaves out {} run{}: {}.", examination.left_out.size(),
                        examination.left_out.size() > 1 ? "s" : "", fmt::join(examination.left_out, ", "));
   }
-  if (examination.uncorrected()) {
-    text += fmt::format(
-        "{}The verdict is of data with faults: don't trust it. Mend the files, or go on with the "
-        "corrections: --data-faults correct",
-        text.empty() ? "" : " ");
+  if (!examination.corrected.empty()) {
+    text += fmt::format("{}The verdict is of the corrected data. The files are as they were: mend them.",
+                        text.empty() ? "" : " ");
   }
   return text;
 }

@@ -93,15 +93,7 @@ const char* name(Handling handling) {
   return handling == Handling::kLeaveOut ? "leave-out" : handling == Handling::kCorrect ? "correct" : "keep";
 }
 
-bool Examination::uncorrected() const {
-  if (corrected) return false;
-  return std::any_of(faults.begin(), faults.end(), [&](const DataFault& fault) {
-    if (fault.files.empty()) return true;
-    return std::any_of(fault.files.begin(), fault.files.end(), [&](const std::string& file) {
-      return std::find(left_out.begin(), left_out.end(), file) == left_out.end();
-    });
-  });
-}
+bool Examination::uncorrected() const { return handling == Handling::kKeep && !faults.empty(); }
 
 std::vector<DataFault> find_data_faults(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
                                         const std::optional<model::ActuatorParameters>& model,
@@ -177,11 +169,10 @@ Examination examine_again(const bench::Bench& bench, const std::vector<std::stri
 Examination examination(std::vector<DataFault> faults, const std::vector<bench::BenchRun>& runs, Handling handling,
                         const std::vector<std::vector<std::string>>& groups) {
   Examination found{.faults = std::move(faults), .handling = handling};
-  found.corrected = handling == Handling::kCorrect && !found.faults.empty();
-  if (handling != Handling::kLeaveOut) return found;
-  for (const DataFault& fault : found.faults) {
+  if (handling == Handling::kKeep) return found;
+  for (std::size_t f = 0; f < found.faults.size(); ++f) {
     std::vector<std::string> left_out = found.left_out;
-    for (const std::string& file : fault.files) {
+    for (const std::string& file : found.faults[f].files) {
       if (std::find(left_out.begin(), left_out.end(), file) == left_out.end()) left_out.push_back(file);
     }
     const auto without = [&left_out](const std::string& file) {
@@ -190,17 +181,20 @@ Examination examination(std::vector<DataFault> faults, const std::vector<bench::
     const bool empties_a_group = std::any_of(groups.begin(), groups.end(), [&](const std::vector<std::string>& files) {
       return std::all_of(files.begin(), files.end(), without);
     });
-    if (2 * left_out.size() <= runs.size() && !empties_a_group) found.left_out = left_out;
+    const bool of_all = found.faults[f].files.empty();
+    if (handling == Handling::kCorrect || of_all || 2 * left_out.size() > runs.size() || empties_a_group)
+      found.corrected.push_back(f);
+    else
+      found.left_out = left_out;
   }
   return found;
 }
 
 bench::Bench examined_bench(const bench::Bench& bench, const Examination& examination) {
   std::vector<bench::Correction> corrections;
-  if (examination.corrected) {
-    for (const DataFault& fault : examination.faults) {
-      corrections.insert(corrections.end(), fault.fixes.begin(), fault.fixes.end());
-    }
+  for (const std::size_t f : examination.corrected) {
+    const std::vector<bench::Correction>& fixes = examination.faults[f].fixes;
+    corrections.insert(corrections.end(), fixes.begin(), fixes.end());
   }
   bench::Bench found = bench::corrected(bench, corrections, examination.left_out);
   found.other_units = examination.other_units;

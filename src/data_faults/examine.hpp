@@ -17,7 +17,7 @@ namespace pmg::data_faults {
 
 /// What happens to faulty data.
 enum class Handling {
-  kLeaveOut,  ///< faulty runs are left out, as long as half of the runs stay; what all runs share stays as it is
+  kLeaveOut,  ///< faulty runs are left out, as long as half of the runs stay; other faults are corrected
   kCorrect,   ///< the corrections are applied
   kKeep,      ///< the data stay as they are
 };
@@ -36,8 +36,8 @@ struct ExamineOptions {
 struct Examination {
   std::vector<DataFault> faults;
   Handling handling = Handling::kLeaveOut;
-  std::vector<std::string> left_out{};  ///< files of runs
-  bool corrected = false;               ///< the diagnosis goes on with the corrections
+  std::vector<std::string> left_out{};   ///< files of runs
+  std::vector<std::size_t> corrected{};  ///< indices of the faults whose corrections the diagnosis goes on with
   bool other_units = false;    ///< positions of these runs are too large for radians or metres; a fault says why
   DataFaultOptions options{};  ///< thresholds in force
   bool uncorrected() const;    ///< faults are left in the data that the diagnosis goes on with
@@ -70,7 +70,8 @@ Examination examine_again(const bench::Bench& bench, const std::vector<std::stri
                           const calib::JointModel& model, unsigned threads);
 
 /// (faults, runs, handling, groups of files) => (what the diagnosis goes on with). A fault's runs are left out as long
-/// as half of all runs stay, and one of each group: the runs that are fitted, and those that are scored.
+/// as half of all runs stay, and one of each group: the runs that are fitted, and those that are scored. Faults whose
+/// runs can't be left out are corrected.
 Examination examination(std::vector<DataFault> faults, const std::vector<bench::BenchRun>& runs, Handling handling,
                         const std::vector<std::vector<std::string>>& groups = {});
 

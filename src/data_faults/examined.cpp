@@ -79,6 +79,8 @@ void Examined::fit() {
 
 double Examined::floors(const QuickFit& fit) const { return std::exp(fitting::median(fit.log_error)) / floor_rad_; }
 
+double Examined::log_floor() const { return std::log(floor_rad_); }
+
 double Examined::usual_log_error() const {
   const double middle = fitting::median(log_error_);
   std::vector<double> apart;

@@ -39,6 +39,8 @@ class Examined {
   /// A usual run's error over that of a perfect model, which misses what differs between repeats; infinite without
   /// repeats.
   double floors(const QuickFit& fit) const;
+  /// ln of the error that a perfect model would have; minus infinity without repeats.
+  double log_floor() const;
 
   /// Few runs, spread over all, for fits: indices.
   const std::vector<std::size_t>& few() const { return few_; }

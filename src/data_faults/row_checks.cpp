@@ -81,7 +81,7 @@ std::vector<Suspect> suspects(const Examined& e) {
   for (std::size_t run = 0; run < e.runs().size(); ++run) {
     if (e.log_error()[run] < middle) continue;  // no worse than the others
     const Suspect best = best_row(e, run, conditions);
-    if (best.gain > std::log(e.options().pair_gain) && mends(e, e.log_error()[run], best.log_error) &&
+    if (best.gain > std::log(e.options().pair_gain) && mends(e, run, e.log_error()[run], best.log_error) &&
         unlike_similar(e, best)) {
       found.push_back(best);
     }
@@ -99,8 +99,8 @@ Explained exchanged(const Examined& e, const Suspect& a, const Suspect& b) {
   const double log_a = log_error_with(e, a.run, of_a), log_b = log_error_with(e, b.run, of_b);
   const double gain_a = e.log_error()[a.run] - log_a, gain_b = e.log_error()[b.run] - log_b;
   const bool sure = std::min(gain_a, gain_b) > std::log(o.pair_gain) && gain_a + gain_b > 2.0 * std::log(o.row_gain) &&
-                    gain_a + gain_b > kOfBest * (a.gain + b.gain) && mends(e, e.log_error()[a.run], log_a) &&
-                    mends(e, e.log_error()[b.run], log_b);
+                    gain_a + gain_b > kOfBest * (a.gain + b.gain) && mends(e, a.run, e.log_error()[a.run], log_a) &&
+                    mends(e, b.run, e.log_error()[b.run], log_b);
   DataFault fault = swapped_runs(e.runs()[a.run], e.runs()[b.run],
                                  {fmt::format("{}: {}", first, gain_text(e, e.log_error()[a.run], log_a)),
                                   fmt::format("{}: {}", second, gain_text(e, e.log_error()[b.run], log_b))});

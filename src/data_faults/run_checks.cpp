@@ -61,7 +61,8 @@ void try_position(const Examined& e, std::size_t run, Column column, const std::
       gain_text(e, before, after)};
   fault.fixes = {fix};
   fault.files = {file};
-  into.push_back({fault, before - after, before - after > std::log(e.options().clear_gain) && mends(e, before, after)});
+  into.push_back(
+      {fault, before - after, before - after > std::log(e.options().clear_gain) && mends(e, run, before, after)});
 }
 
 /// Signs and units of the positions of one run.

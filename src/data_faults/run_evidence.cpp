@@ -4,6 +4,9 @@
 
 #include <cmath>
 
+#include "bench/noise_floor.hpp"
+#include "calib/fit_results.hpp"
+
 namespace pmg::data_faults {
 
 std::vector<DataFault> clearest(const std::vector<Explained>& explanations) {
@@ -15,7 +18,14 @@ std::vector<DataFault> clearest(const std::vector<Explained>& explanations) {
   return {best->fault};
 }
 
-bool mends(const Examined& e, double before, double after) {
+double log_error_standing_still(const calib::SingleJoint& joint) {
+  const double noise_rad = bench::sensor_noise_rad(joint.run().recording);
+  return 0.5 * std::log(calib::standing_still({joint}).mean_square_rad2() + noise_rad * noise_rad);
+}
+
+bool mends(const Examined& e, std::size_t run, double before, double after) {
+  if (before < e.log_floor()) return false;
+  if (after > log_error_standing_still(e.model().joint(e.runs()[run])) + std::log(calib::kExplainedShare)) return false;
   return after < e.usual_log_error() || before - after > std::log(e.options().overwhelming_gain);
 }
 

@@ -18,9 +18,13 @@ struct Explained {
 /// The sure explanation with the largest gain; empty if there is none.
 std::vector<DataFault> clearest(const std::vector<Explained>& explanations);
 
-/// True if a correction that takes ln of a run's error from `before` to `after` makes the run a usual one, or divides
-/// the error by more than `overwhelming_gain`.
-bool mends(const Examined& examined, double before, double after);
+/// ln of the error of a model in which the joint rests at the mean of its readings.
+double log_error_standing_still(const calib::SingleJoint& joint);
+
+/// True if a correction that takes ln of this run's error from `before` to `after` makes the run a usual one, or
+/// divides the error by more than `overwhelming_gain`. Never of a run that is missed by less than repeats differ, nor
+/// with a model that does not explain how the joint moves: whatever makes it rest explains a joint that sticks.
+bool mends(const Examined& examined, std::size_t run, double before, double after);
 
 /// ln of the corrected run's error, by the model that fits all runs.
 double log_error_with(const Examined& examined, std::size_t run, const bench::Correction& fix);

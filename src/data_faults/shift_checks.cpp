@@ -82,7 +82,7 @@ void try_shift(const Examined& e, std::size_t run, const std::vector<Shift>& shi
   // Wrong gains or a wrong load make a run late or early, too: then another row explains it better than a shift.
   const double least = repeated ? e.options().shift_gain : e.options().lone_shift_gain;
   const bool sure =
-      before - after > std::log(least) && mends(e, before, after) && after < lowest_log_error_of_rows(e, run);
+      before - after > std::log(least) && mends(e, run, before, after) && after < lowest_log_error_of_rows(e, run);
   into.push_back({fault, before - after, sure});
 }
 

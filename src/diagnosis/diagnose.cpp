@@ -244,12 +244,21 @@ class JointDiagnosisRun {
     unite(asked.same_here, diagnosis_.causes);
   }
 
+  /// True if the model misses the judged runs by more than a verdict forgives, and hardly less than a joint that stands
+  /// still. The rest of usual blocks says nothing of a joint that sticks in most of them.
+  bool misses_the_motion() const {
+    const double after = diagnosis_.held_out_after.value;
+    return after > std::sqrt(by_.remains_of_noise) * diagnosis_.noise_floor.mean_absolute_rad &&
+           after > calib::kExplainedShare * diagnosis_.standing_still;
+  }
+
   void conclude(const EffectSearch& search, const effects::NestedFit& of_assemblies, const effects::NestedFit& fit) {
     const double noise = std::max(1e-300, std::pow(diagnosis_.noise_floor.rms_rad, 2));
     const double rest = rest_squares_, beginning = search.usual_rest(search.base());
     diagnosis_.before_over_noise = std::sqrt(1.0 + beginning / noise);
     diagnosis_.after_over_noise = std::sqrt(1.0 + rest / noise);
-    const bool remains = rest > (by_.remains_of_noise - 1.0) * noise && rest > by_.remains_of_beginning * beginning;
+    const bool remains = (rest > (by_.remains_of_noise - 1.0) * noise && rest > by_.remains_of_beginning * beginning) ||
+                         misses_the_motion();
     if (remains) {
       diagnosis_.depends_on = significant_dependences(
           residual_samples(bench_, of_assemblies.runs(), diagnosis_.after, options_.threads, by_.signatures.step));

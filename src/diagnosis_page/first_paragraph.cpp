@@ -204,8 +204,12 @@ std::string first_paragraph(const bench::Bench& bench, const Diagnosis& diagnosi
     return "The simulation doesn't move as this joint does, not even roughly: the recordings may be of something else. "
            "Next: "
            "look at the pictures, and check which joint was recorded, its commands and its readings.";
-  return fmt::format("{}{} {}{} {}", what_is_wrong(bench, diagnosis), how_sure(diagnosis), what_it_costs(diagnosis),
-                     how_much_better(bench, diagnosis), what_next(diagnosis));
+  const char* corrected =
+      diagnosis.data.corrected.empty()
+          ? ""
+          : "The recordings have faults: they stand above. All that follows was computed from corrected recordings. ";
+  return fmt::format("{}{}{} {}{} {}", corrected, what_is_wrong(bench, diagnosis), how_sure(diagnosis),
+                     what_it_costs(diagnosis), how_much_better(bench, diagnosis), what_next(diagnosis));
 }
 
 void show_what_to_check(pages::Page& page, const Diagnosis& diagnosis) {

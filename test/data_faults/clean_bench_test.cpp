@@ -44,6 +44,24 @@ TEST(SoundData, HaveNoFaultsUnderTorqueCommandsAndWithRepeats) {
   EXPECT_EQ(text(find_data_faults(repeated.bench, repeated.runs, std::nullopt, {}, 1)), "");
 }
 
+/// A joint that sticks in most runs and moves in a few, as one does that sticks harder the longer it rests.
+test::RandomBench sticking_bench(unsigned seed) {
+  test::RandomBench made = test::torque_bench(seed), stuck = made;
+  stuck.truth.actuator.friction.coulomb_Nm = 20.0 * made.runs.front().load.gravity_Nm;
+  test::play(stuck, seed);
+  for (std::size_t i = 0; i < made.runs.size(); ++i) {
+    if (i % 4 != 0) made.runs[i].recording.q_rad = stuck.runs[i].recording.q_rad;
+  }
+  return made;
+}
+
+TEST(SoundData, HaveNoFaultsWhereTheJointSticks) {
+  for (const unsigned seed : {34U, 35U, 36U}) {
+    const test::RandomBench made = sticking_bench(seed);
+    EXPECT_EQ(text(find_data_faults(made.bench, made.runs, std::nullopt, {}, 1)), "") << "seed " << seed;
+  }
+}
+
 TEST(SoundData, OfMeasuredJointsHaveNoFaults) {
   const fs::path data = fs::path(pmg::test::project_folder()) / "../shared/data/bench";
   if (!fs::exists(data)) GTEST_SKIP() << "no measured recordings in " << data;

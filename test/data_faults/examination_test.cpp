@@ -34,39 +34,45 @@ DataFault turned(const std::vector<std::string>& files) {
 TEST(Examination, LeavesOutAFaultyRunAndSaysSo) {
   const Examination found = examination({turned({"run3.csv"})}, ten_runs(), Handling::kLeaveOut);
   EXPECT_EQ(found.left_out, std::vector<std::string>{"run3.csv"});
-  EXPECT_FALSE(found.corrected);
+  EXPECT_TRUE(found.corrected.empty());
   EXPECT_FALSE(found.uncorrected());
   EXPECT_THAT(faults_text(found), HasSubstr("leaves out 1 run: run3.csv"));
   EXPECT_EQ(examined_bench({}, found).left_out, found.left_out);
   EXPECT_TRUE(examined_bench({}, found).corrections.empty());
 }
 
-TEST(Examination, GoesOnWithTheCorrectionOnlyIfTold) {
-  for (const Handling handling : {Handling::kLeaveOut, Handling::kKeep}) {
+TEST(Examination, CorrectsWhatCannotBeLeftOut) {
+  for (const Handling handling : {Handling::kLeaveOut, Handling::kCorrect}) {
     const Examination found = examination({turned({})}, ten_runs(), handling);
-    EXPECT_TRUE(examined_bench({}, found).corrections.empty());
+    EXPECT_EQ(examined_bench({}, found).corrections.size(), 1U);
     EXPECT_TRUE(found.left_out.empty()) << "all runs can't be left out";
-    EXPECT_TRUE(found.uncorrected());
-    EXPECT_THAT(faults_text(found), HasSubstr("don't trust it"));
+    EXPECT_FALSE(found.uncorrected());
+    EXPECT_THAT(faults_text(found), HasSubstr("of the corrected data"));
   }
-  const Examination corrected = examination({turned({})}, ten_runs(), Handling::kCorrect);
-  EXPECT_EQ(examined_bench({}, corrected).corrections.size(), 1U);
-  EXPECT_FALSE(corrected.uncorrected());
-  EXPECT_THAT(faults_text(corrected), HasSubstr("of the corrected data"));
+}
+
+TEST(Examination, KeepsFaultyDataOnlyIfTold) {
+  const Examination kept = examination({turned({}), turned({"run3.csv"})}, ten_runs(), Handling::kKeep);
+  EXPECT_TRUE(examined_bench({}, kept).corrections.empty());
+  EXPECT_TRUE(kept.left_out.empty());
+  EXPECT_TRUE(kept.uncorrected());
+  EXPECT_THAT(faults_text(kept), HasSubstr("don't trust it"));
 }
 
 TEST(Examination, KeepsHalfOfTheRuns) {
   const DataFault many = turned({"run0.csv", "run1.csv", "run2.csv", "run3.csv", "run4.csv", "run5.csv"});
   const Examination found = examination({many, turned({"run9.csv"})}, ten_runs(), Handling::kLeaveOut);
   EXPECT_EQ(found.left_out, std::vector<std::string>{"run9.csv"});
-  EXPECT_TRUE(found.uncorrected());
+  EXPECT_EQ(found.corrected, std::vector<std::size_t>{0});
+  EXPECT_EQ(examined_bench({}, found).corrections.front().files, many.files);
+  EXPECT_THAT(faults_text(found), testing::AllOf(HasSubstr("leaves out 1 run"), HasSubstr("of the corrected data")));
 }
 
 TEST(Examination, LeavesARunOfEveryGroup) {
   const std::vector<std::vector<std::string>> groups = {{"run0.csv", "run1.csv"}, {"run3.csv"}};
   const Examination found = examination({turned({"run3.csv"})}, ten_runs(), Handling::kLeaveOut, groups);
   EXPECT_TRUE(found.left_out.empty()) << "nothing would be left to score";
-  EXPECT_TRUE(found.uncorrected());
+  EXPECT_EQ(found.corrected, std::vector<std::size_t>{0});
   const Examination fitted = examination({turned({"run1.csv"})}, ten_runs(), Handling::kLeaveOut, groups);
   EXPECT_EQ(fitted.left_out, std::vector<std::string>{"run1.csv"});
 }
@@ -74,7 +80,7 @@ TEST(Examination, LeavesARunOfEveryGroup) {
 TEST(Examination, SaysNothingOfSoundData) {
   const Examination sound = examination({}, ten_runs(), Handling::kCorrect);
   EXPECT_EQ(faults_text(sound), "");
-  EXPECT_FALSE(sound.corrected);
+  EXPECT_TRUE(sound.corrected.empty());
   nlohmann::ordered_json json;
   add_to(json, sound);
   EXPECT_TRUE(json.at("data_faults").empty());
@@ -142,7 +148,7 @@ TEST(Examination, DegreesTooLargeForRadiansAreNamedAndNotRefused) {
   test::write_bench(folder.path(), with_readings(far_swings(), 57.29577951308232, 0, 1000));
   const bench::Bench bench = bench::read_bench(folder.path());
   ASSERT_THROW(bench.read_runs(bench::RowFilter("")), files::ConfigError);
-  for (const Handling handling : {Handling::kCorrect, Handling::kLeaveOut}) {
+  for (const Handling handling : {Handling::kCorrect, Handling::kLeaveOut, Handling::kKeep}) {
     const Examination found = examine(bench, {""}, std::nullopt, {.handling = handling}, 1);
     ASSERT_EQ(found.faults.size(), 1U);
     EXPECT_EQ(found.faults.front().kind, Kind::kUnit);
@@ -150,7 +156,7 @@ TEST(Examination, DegreesTooLargeForRadiansAreNamedAndNotRefused) {
     const std::vector<bench::BenchRun> runs = examined_bench(bench, found).read_runs(bench::RowFilter(""));
     const bool plausible = std::ranges::all_of(
         runs, [](const bench::BenchRun& run) { return bench::plausible_positions(run.recording, false); });
-    EXPECT_EQ(plausible, handling == Handling::kCorrect);
+    EXPECT_EQ(plausible, handling != Handling::kKeep);
   }
 }
 

@@ -188,27 +188,41 @@ TEST_F(Diagnose, InterruptedItHasNoVerdictWhereverItWas) {
 }
 
 TEST_F(Diagnose, ReadingsInDegreesOrOfNoiseAreNoGreenPage) {
+  using enum data_faults::Handling;
   calib::JointModel truth;
   truth.actuator = known();
   std::mt19937 random(5);
   std::normal_distribution<double> noise(0.0, 0.3);
-  for (const bool degrees : {true, false}) {
+  struct Case {
+    const char* what;
+    data_faults::Handling handling;
+    work::Grade grade;
+  };
+  for (const Case& one : {Case{"degrees", kKeep, work::Grade::kOffItsData},
+                          {"degrees", kLeaveOut, work::Grade::kOpen},
+                          {"noise", kLeaveOut, work::Grade::kOffItsData}}) {
+    const bool degrees = std::string(one.what) == "degrees";
     std::vector<calib::SingleJoint> joints;
-    for (const calib::SingleJoint& one : test::record(test::pd_bench(true), truth, 4, 2e-4)) {
-      bench::BenchRun run = one.run();
+    for (const calib::SingleJoint& healthy : test::record(test::pd_bench(true), truth, 4, 2e-4)) {
+      bench::BenchRun run = healthy.run();
       for (double& q_rad : run.recording.q_rad) q_rad = degrees ? q_rad * 57.29578 : noise(random);
       for (double& q_rad : run.recording.q_cmd_rad) q_rad *= degrees ? 57.29578 : 1.0;
-      joints.emplace_back(test::pd_bench(true), run, one.step_s());
+      joints.emplace_back(test::pd_bench(true), run, healthy.step_s());
     }
     fs::remove_all(folder_);
     test::write_bench(folder_, joints);
     const bench::Bench bench = bench::read_bench(folder_);
     DiagnoseOptions options;
     options.model = known();
+    options.data.handling = one.handling;
     DiagnosedRuns runs;
     const Diagnosis found = diagnose(bench, options, &runs);
-    SCOPED_TRACE(degrees ? "degrees" : "noise");
-    expect_worth(bench, found, runs, work::Grade::kOffItsData);
+    SCOPED_TRACE(one.what);
+    expect_worth(bench, found, runs, one.grade);
+    if (degrees && one.handling == kLeaveOut) {
+      EXPECT_EQ(found.verdict, evidence::Verdict::kNone) << "with the fault corrected the joint is healthy";
+      EXPECT_FALSE(found.data.faults.empty());
+    }
   }
 }
 

@@ -158,6 +158,27 @@ TEST_F(Rules, WhatNoEffectExplainsIsUnexplained) {
   EXPECT_NE(diagnose(bench, options).verdict, evidence::Verdict::kUnexplained);
 }
 
+TEST_F(Rules, AModelThatMovesWhereTheJudgedJointRestsExplainsNothing) {
+  calib::JointModel truth;
+  truth.actuator = healthy_actuator();
+  for (const bool rests : {false, true}) {
+    std::vector<calib::SingleJoint> joints;
+    for (const calib::SingleJoint& joint : test::record(bench_, truth, 4, 2e-4)) {
+      bench::BenchRun run = joint.run();
+      run.repeat = joints.size() < 2 ? 0 : 1;
+      for (std::size_t k = 0; rests && run.repeat == 1 && k < run.recording.q_rad.size(); ++k)
+        run.recording.q_rad[k] = k % 2 == 0 ? 1e-4 : -1e-4;
+      joints.emplace_back(bench_, run, joint.step_s());
+    }
+    DiagnoseOptions options = given_healthy();
+    options.fit = "repeat == 0", options.score = "repeat == 1";
+    options.data.handling = data_faults::Handling::kKeep;
+    EXPECT_EQ(diagnose(written(joints), options).verdict,
+              rests ? evidence::Verdict::kUnexplained : evidence::Verdict::kNone);
+    fs::remove_all(folder_);
+  }
+}
+
 TEST_F(Rules, UnexplainedMayHaveCausesBeside) {
   calib::JointModel truth;
   truth.actuator = healthy_actuator();

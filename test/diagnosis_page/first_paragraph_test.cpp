@@ -153,9 +153,18 @@ TEST(FirstParagraph, SaysWhatOrMeansWhateverTheVerdict) {
 TEST(FirstParagraph, OfFaultyDataTrustsNothing) {
   Diagnosis faulty = diagnosis_of(Verdict::kFound, {cause("gain")});
   faulty.data.faults.push_back({.kind = data_faults::Kind::kUnit, .where = "column q_cmd_rad", .correction = ""});
+  faulty.data.handling = data_faults::Handling::kKeep;
   ASSERT_TRUE(faulty.data.uncorrected());
   EXPECT_THAT(paragraph_of(faulty), testing::AllOf(HasSubstr("don't trust it"), HasSubstr("repair the recordings"),
                                                    Not(HasSubstr("sure")), Not(HasSubstr("stronger or weaker"))));
+}
+
+TEST(FirstParagraph, SaysThatTheRecordingsWereCorrected) {
+  Diagnosis corrected = diagnosis_of(Verdict::kFound, {cause("gain")});
+  corrected.data.faults.push_back({.kind = data_faults::Kind::kUnit, .where = "column q_cmd_rad", .correction = ""});
+  corrected.data.corrected = {0};
+  EXPECT_THAT(paragraph_of(corrected),
+              testing::AllOf(HasSubstr("was computed from corrected recordings"), HasSubstr("stronger or weaker")));
 }
 
 TEST(FirstParagraph, PointsAtRunsThatContradictEachOther) {
