@@ -56,8 +56,9 @@ void expect_simulable(const model::ActuatorParameters& parameters, double step_s
   const bool elastic = std::isfinite(transmission.stiffness_Nm_per_rad);
   expect(!elastic || transmission.armature_kg_m2 > 0.0, "a rotor behind a spring needs an armature");
   expect(elastic || (transmission.backlash_rad == 0.0 && transmission.damping_Nm_s_per_rad == 0.0 &&
-                     transmission.hardening_Nm_per_rad3 == 0.0),
-         "backlash, shaft damping and hardening need a transmission.stiffness_Nm_per_rad");
+                     transmission.hardening_Nm_per_rad3 == 0.0 && transmission.hysteretic_share == 0.0),
+         "backlash, shaft damping, hardening and hysteresis need a transmission.stiffness_Nm_per_rad");
+  expect(transmission.hysteretic_share < 1.0, "transmission.hysteretic_share is 1: nothing would carry a load");
   model::check(residual);
 }
 

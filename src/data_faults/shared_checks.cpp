@@ -160,9 +160,11 @@ bool exact(const Examined& e, const Groups& groups, const Tried& tried, const De
          evidence(tried.fit, groups.without()) > o.exact_evidence;
 }
 
-/// How far a model's gain is from the one that was known before [logarithm].
+/// How far a model's torque per radian is from the one that was known before [logarithm].
 double gain_off(const Examined& e, const calib::JointModel& model) {
-  return std::abs(std::log(model.actuator.drive.kp_scale / e.model().start().drive.kp_scale));
+  const auto& now = model.actuator.drive;
+  const auto& known = e.model().start().drive;
+  return std::abs(std::log(now.kp_scale * now.torque_per_unit_Nm / (known.kp_scale * known.torque_per_unit_Nm)));
 }
 
 /// The group whose factor alone explains the runs, clearly better than a common factor of all groups does, and than one

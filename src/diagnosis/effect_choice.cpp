@@ -23,6 +23,18 @@ std::string EffectSearch::aliased(const Trial& trial, const std::vector<Trial>& 
   return "";
 }
 
+bool EffectSearch::is_superfluous(const Trial& other, const Extension& current, const std::string& effect) const {
+  return effects::is_nested(effect, current.forms, other.effect, other.extension.forms) &&
+         !objection(trial(current, other.extension, other.effect)).empty();
+}
+
+/// True if the special case of an effect stands in its place.
+bool EffectSearch::stands_for(const Trial& special, const Trial& of) const {
+  if (effects::contains(effects::effect(of.effect).contains, special.effect))
+    return compared(special.extension, of.extension).deviations < options_.clearly_deviations;
+  return is_superfluous(of, special.extension, special.effect);
+}
+
 /// (trials, best first) => (the convincing trial with the fewest parameters among the nearly equal ones; null if none
 /// is convincing). A special case wins over the effect that contains it unless it is clearly worse. Says of each trial
 /// what is against it.
@@ -38,8 +50,7 @@ const Trial* EffectSearch::chosen(std::vector<Trial>& trials) const {
       best = trial.comparison.log_gain;
       continue;
     }
-    const bool special = effects::contains(effects::effect(chosen->effect).contains, trial.effect) &&
-                         compared(trial.extension, chosen->extension).deviations < options_.clearly_deviations;
+    const bool special = stands_for(trial, *chosen);
     if (trial.comparison.log_gain < (1.0 - options_.equal_gain) * best && !special) continue;
     if (trial.extension.numbers() < chosen->extension.numbers()) chosen = &trial;
   }
@@ -86,7 +97,7 @@ Extension EffectSearch::exchanged(Extension current) {
     for (const Trial& other : alternatives(refit_without(current, name), name)) {
       if (!clearly_better(other.extension, current) ||
           effects::has_other_sign(other.effect, other.extension.fitted.model) || was_left_out(other.effect) ||
-          !objection(other).empty())
+          !objection(other).empty() || is_superfluous(other, current, name))
         continue;
       current = other.extension;
       e = 0;

@@ -96,6 +96,10 @@ class EffectSearch {
   /// bends.
   std::optional<Extension> as_special_case(const Extension& from, const std::string& effect) const;
 
+  /// True if another effect has every number of this effect's form and a further one, and explains less beside it than
+  /// a second effect must: friction that differs a little by direction is the friction.
+  bool is_superfluous(const Trial& other, const Extension& current, const std::string& effect) const;
+
   /// The effect's parameter as read off the recordings; null where it is not.
   const MeasuredCause* measured(const std::string& effect) const;
   /// A model-free check detects the effect, not its size.
@@ -141,6 +145,7 @@ class EffectSearch {
   Trial trial(const Extension& without, const Extension& with, const std::string& effect) const;
   std::string doubt(const Trial& trial) const;
   std::vector<Trial> tried(const Extension& without, double most, bool all_evident);
+  bool stands_for(const Trial& special, const Trial& of) const;
   const Trial* chosen(std::vector<Trial>& trials) const;
   bool leaves_rest(const Extension& extension) const;
   std::string objection_to_pair(const Extension& pair, const std::string& first, const std::string& second);

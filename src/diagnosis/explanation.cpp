@@ -112,7 +112,8 @@ class Explaining {
     Rivals rivals{{chosen_.fitted}, {cause.effect}};
     for (const Trial& other : search_.alternatives(rest, cause.effect)) {
       const effects::SeenSeparation apart = seen(other.extension);
-      if (!is_rival(other, apart) || search_.refuted(other)) continue;
+      if (!is_rival(other, apart) || search_.refuted(other) || search_.is_superfluous(other, chosen_, cause.effect))
+        continue;
       cause.evidence.push_back(in_its_place(other.effect, apart, search_.apart_limits()));
       cause.or_instead.push_back(other.effect);
       rivals.models.push_back(other.extension.fitted);

@@ -82,10 +82,10 @@ struct JointDiagnosisOptions {
   work::Threshold hopeless_form_deviations{
       4.0, "", "a form that is worse by so many standard deviations after a first fit is not fitted to its end", kCost};
   // The verdict.
-  work::Threshold remains_of_noise{8.0, "",
+  work::Threshold remains_of_noise{6.0, "",
                                    "a residual of less than so many times the noise's mean square is not called "
                                    "unexplained: loads are weighed to a percent, friction changes from day to day",
-                                   kPlants};
+                                   "hidden plants: of those without a cause sound joints leave at most 4.8"};
   work::Threshold remains_of_beginning{0.1, "", "nor is one of less than this share of the beginning", kPlants};
   // When the readings alone decide.
   work::Threshold coarser_quantum{

@@ -22,6 +22,12 @@ const Form& form_of(const std::string& effect_name, const Forms& forms) {
   return effect(effect_name).forms.at(found == forms.end() ? 0 : found->second);
 }
 
+bool is_nested(const std::string& effect, const Forms& its_forms, const std::string& in, const Forms& forms) {
+  const std::vector<std::string>&numbers = form_of(effect, its_forms).parameters, &more = form_of(in, forms).parameters;
+  return numbers.size() < more.size() &&
+         std::ranges::all_of(numbers, [&](const std::string& number) { return contains(more, number); });
+}
+
 std::size_t Extension::numbers() const {
   std::size_t count = fitted.unknowns.size();
   for (const std::string& name : effects) {

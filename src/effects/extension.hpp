@@ -27,6 +27,9 @@ struct BaseModel {
 using Forms = std::map<std::string, std::size_t>;
 const Form& form_of(const std::string& effect, const Forms& forms);
 
+/// True if an effect's form has every number of another effect's form, and more.
+bool is_nested(const std::string& effect, const Forms& its_forms, const std::string& in, const Forms& forms);
+
 /// A form that the runs don't tell from the one in a model.
 struct OpenForm {
   std::string name;

@@ -60,6 +60,8 @@ Starts where(bool (*possible)(const StartsFrom&), Starts starts) {
 
 bool closes_loop(const StartsFrom& from) { return from.scale.law != bench::DriveLaw::kTorque; }
 
+bool switches_off(const StartsFrom& from) { return from.scale.switches_off; }
+
 std::vector<double> itself(const Measured& measured) { return {measured.value}; }
 
 std::vector<double> opposite(const Measured& measured) { return {-measured.torque_Nm}; }

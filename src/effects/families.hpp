@@ -40,6 +40,9 @@ Starts where(bool (*possible)(const StartsFrom&), Starts starts);
 /// The drive has a position loop of its own.
 bool closes_loop(const StartsFrom& from);
 
+/// The drive is off in some of the recordings' samples.
+bool switches_off(const StartsFrom& from);
+
 /// A check's value as it is.
 std::vector<double> itself(const Measured& measured);
 /// The balance is drive = load + friction - constant torque. With a reading r = q + z gravity G sin(r - z) is

@@ -111,12 +111,15 @@ std::vector<Effect> friction_effects() {
                          .both = {{"friction.coulomb_Nm", 0.6}, {"friction.viscous_Nm_s_per_rad", 0.2}}}},
       {.name = "offset",
        .title = "constant torque (asymmetry)",
-       .forms = {law("constant", "", {"ripple.offset_Nm"}, "Craig 2005", each({-0.2, -0.05, 0.05, 0.2}))},
+       .forms = {law("constant", "always the same", {"ripple.offset_Nm"}, "Craig 2005", each({-0.2, -0.05, 0.05, 0.2})),
+                 law("drive", "of the drive, while it is on", {"drive.offset_Nm"}, "Chung, Sul 1998",
+                     where(switches_off, each({-0.2, 0.2})))},
        .shows = "pushed to one side by the same torque always, at rest too",
        .needs = "two gains, and motion in both directions",
        .workshop = {"a constant torque to one side",
                     "Let the joint go where gravity doesn't turn it: does something push it? Look for a cable, a hose "
-                    "or a spring that pulls.",
+                    "or a spring that pulls. If nothing pushes while the drive is off, let the drive find the zero of "
+                    "its current sensor again.",
                     "It rests beside its target, always on the same side."},
        .strength = opposite},
   };

@@ -30,6 +30,19 @@ Values hardening_shafts(const StartsFrom& from) {
   return found;
 }
 
+/// Belts that give way by half.
+Values belts(const StartsFrom& from) {
+  Values found;
+  for (const double bend_rad : {0.02, 0.06}) {
+    for (const double hysteresis_rad : {0.01, 0.03}) {
+      std::vector<double> one = shaft(from, bend_rad);
+      one.insert(one.end(), {0.5, hysteresis_rad});
+      found.push_back(one);
+    }
+  }
+  return found;
+}
+
 Starts plays(const std::vector<double>& bends_rad) {
   return [bends_rad](const StartsFrom& from) {
     Values found;
@@ -83,14 +96,18 @@ std::vector<Effect> transmission_effects() {
                      "Tuttle, Seering 1996", hardening_shafts),
                  law("sensor_before", "behind the sensor",
                      {"transmission.stiffness_Nm_per_rad", "transmission.damping_Nm_s_per_rad"}, "Sweet, Good 1985",
-                     where(closes_loop, shafts), {{"sensor.on_motor", 1.0}})},
+                     where(closes_loop, shafts), {{"sensor.on_motor", 1.0}}),
+                 law("belt", "of a belt with hysteresis",
+                     {"transmission.stiffness_Nm_per_rad", "transmission.damping_Nm_s_per_rad",
+                      "transmission.hysteretic_share", "transmission.hysteresis_rad"},
+                     "Bouc 1967; Wen 1976", belts)},
        .shows = "rings at a frequency of its own; bends with load",
        .needs = "steps, and two loads",
        .workshop = {"a soft part between motor and output",
                     "Hold the motor still and push the output: does it give way and spring back? Check belt, coupling, "
                     "gear and screws.",
                     "The limb gives way under load and swings after each stop."},
-       .shapes = {"transmission.damping_Nm_s_per_rad"}},
+       .shapes = {"transmission.damping_Nm_s_per_rad", "transmission.hysteresis_rad"}},
   };
 }
 

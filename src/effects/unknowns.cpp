@@ -62,6 +62,7 @@ BenchScale scale_of(const bench::Bench& bench, const std::vector<calib::SingleJo
     const bench::BenchRun& run = joint.run();
     const bench::Recording& r = run.recording;
     scale.bus_recorded = scale.bus_recorded || !r.bus_V.empty();
+    scale.switches_off = scale.switches_off || std::ranges::find(r.enabled, false) != r.enabled.end();
     scale.temperature_recorded = scale.temperature_recorded || !r.temp_C.empty() || run.temp_C;
     scale.duration_s = std::max(scale.duration_s, r.t_s.empty() ? 0.0 : r.t_s.back() - r.t_s.front());
     inertias.push_back(run.load.inertia_kg_m2 + model.actuator.transmission.armature_kg_m2);

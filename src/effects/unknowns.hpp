@@ -20,6 +20,7 @@ struct BenchScale {
   double output = 1.0;                                     ///< torque_Nm in the unit of the drive's output
   double duration_s = 1.0;                                 ///< of the longest run
   bool bus_recorded = false, temperature_recorded = false;
+  bool switches_off = false;  ///< the drive is off in some samples
   bench::DriveLaw law = bench::DriveLaw::kPositionPd;
 };
 

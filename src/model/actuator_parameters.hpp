@@ -27,7 +27,7 @@ struct ActuatorParameters {
   } command;
 
   /// output = clip(kp e + kd de + feed-forward torque / (torque_per_unit supply), +-limit);
-  /// torque = torque_scale torque_per_unit (output supply - back_emf dq).
+  /// torque = torque_scale torque_per_unit (output supply - back_emf dq) + offset.
   struct Drive {
     double kp_scale = 1.0, kd_scale = 1.0;  ///< real gain over nominal gain
     double limit = std::numeric_limits<double>::infinity();
@@ -39,7 +39,8 @@ struct ActuatorParameters {
     double torque_delay_s = 0.0;      ///< from the output to the motor's torque: commands and readings act late alike
     double torque_per_unit_Nm = 1.0;  ///< per unit of output times supply, as the drive believes it
     double torque_scale = 1.0;        ///< real torque over what the drive believes, feed-forward too
-    double saturation_per_Nm = 0.0;   ///< iron saturates: torque T becomes T / (1 + saturation |T|)
+    double offset_Nm = 0.0;          ///< torque that the drive gives too much while it is on: its current sensor's zero
+    double saturation_per_Nm = 0.0;  ///< iron saturates: torque T becomes T / (1 + saturation |T|)
     double back_emf_s_per_rad = 0.0;  ///< [output times supply per rad/s]
     /// Voltage servo: share of the supply that its source loses per Nm at full duty (output at its limit). A bridge
     /// takes duty times the motor's current from the bus.
@@ -89,8 +90,13 @@ struct ActuatorParameters {
     double stiffness_Nm_per_rad = std::numeric_limits<double>::infinity();
     double hardening_Nm_per_rad3 = 0.0;  ///< torque of the shaft grows by hardening twist^3; needs a stiffness
     double damping_Nm_s_per_rad = 0.0;   ///< of the shaft; needs a stiffness
-    double backlash_rad = 0.0;           ///< free play from end to end; needs a stiffness
-    double friction_on_joint = 0.0;      ///< share of friction that acts on the joint's side of an elastic transmission
+    /// Of a belt's stiffness, the share that gives way: torque = stiffness ((1 - share) twist + share bend), where the
+    /// bend follows the twist and levels off, bend' = twist' - |twist'| bend / hysteresis (Bouc, Wen). Needs a
+    /// stiffness.
+    double hysteretic_share = 0.0;
+    double hysteresis_rad = 0.02;    ///< the bend at which it levels off
+    double backlash_rad = 0.0;       ///< free play from end to end; needs a stiffness
+    double friction_on_joint = 0.0;  ///< share of friction that acts on the joint's side of an elastic transmission
     bool operator==(const Transmission&) const = default;
   } transmission;
 
@@ -243,6 +249,7 @@ inline constexpr auto kActuatorParameters = [] {
       PMG_ACTUATOR_PARAMETER(drive, torque_delay_s, kDelay, 0.0, 0.06, kNotNegative, 0.0051),
       PMG_ACTUATOR_PARAMETER(drive, torque_per_unit_Nm, kTorquePerOutput, 0.01, 5.0, kNotNegative, 1.3),
       PMG_ACTUATOR_PARAMETER(drive, torque_scale, kFactor, 0.2, 5.0, kPositive, 0.8),
+      PMG_ACTUATOR_PARAMETER(drive, offset_Nm, kTorque, -5.0, 5.0, kAny, 1.0),
       PMG_ACTUATOR_PARAMETER(drive, saturation_per_Nm, kPerTorque, 0.0, 2.0, kNotNegative, 0.1),
       PMG_ACTUATOR_PARAMETER(drive, back_emf_s_per_rad, kBackEmf, 0.01, 10.0, kNotNegative, 0.3),
       PMG_ACTUATOR_PARAMETER(drive, supply_sag_per_Nm, kPerTorque, 0.0, 1.0, kNotNegative, 0.2),
@@ -273,6 +280,8 @@ inline constexpr auto kActuatorParameters = [] {
       PMG_ACTUATOR_PARAMETER(transmission, stiffness_Nm_per_rad, kStiffness, 5.0, 5000.0, kNotNegative, 40.0),
       PMG_ACTUATOR_PARAMETER(transmission, hardening_Nm_per_rad3, kHardening, 10.0, 1e8, kNotNegative, 4e3),
       PMG_ACTUATOR_PARAMETER(transmission, damping_Nm_s_per_rad, kDamping, 0.0, 10.0, kNotNegative, 0.1),
+      PMG_ACTUATOR_PARAMETER(transmission, hysteretic_share, kFactor, 0.0, 0.95, kShare, 0.5),
+      PMG_ACTUATOR_PARAMETER(transmission, hysteresis_rad, kAngle, 0.001, 0.1, kPositive, 0.02),
       PMG_ACTUATOR_PARAMETER(transmission, backlash_rad, kAngle, 0.0, 0.1, kNotNegative, 0.06),
       PMG_ACTUATOR_PARAMETER(transmission, friction_on_joint, kFactor, 0.0, 1.0, kShare, 0.7),
       PMG_ACTUATOR_PARAMETER(friction, viscous_Nm_s_per_rad, kDamping, 0.0, 5.0, kNotNegative, 0.8),

@@ -48,7 +48,7 @@ void ActuatorModel::reset(double q_rad) noexcept {
   shaft_.reset(q_rad);
   warmth_.reset();
   residual_.reset();
-  drive_Nm_ = transmitted_Nm_ = command_rad_ = error_rad_ = output_ = 0.0;
+  drive_Nm_ = offset_Nm_ = transmitted_Nm_ = command_rad_ = error_rad_ = output_ = 0.0;
   given_ = {};
   given_at_rad_s_ = 0.0;
 }
@@ -117,6 +117,7 @@ TorqueLine ActuatorModel::drive(const ActuatorInput& input, double q_rad, double
     command_rad_ = at_drive.q_rad;
     error_rad_ = at_drive.q_rad - seen.q_rad;
   }
+  offset_Nm_ = input.enabled ? parameters_.drive.offset_Nm : 0.0;
   if (!input.enabled) return motor_.idle(dq_rad_s, warmth_.torque());
   const actuator::ControlLaw::Output output = law_.step(at_drive, seen, sensor_.prompt_speed());
   if (residual_.acts()) output_ = output.value;
@@ -124,7 +125,9 @@ TorqueLine ActuatorModel::drive(const ActuatorInput& input, double q_rad, double
     motor_.settle(output.value);
   else if (motor_.needs_past())
     motor_.settle(law_.standing_output());
-  return motor_.step(output, input.supply, dq_rad_s, warmth_.torque());
+  TorqueLine driven = motor_.step(output, input.supply, dq_rad_s, warmth_.torque());
+  driven.torque_Nm += offset_Nm_;
+  return driven;
 }
 
 /// offset + (amplitude + torque_share driven) sin(order q + phase).

@@ -60,7 +60,7 @@ class ActuatorModel {
 
   /// Torque of the drive itself at the beginning of the step, before friction and gear: a drive derives it from its
   /// current, with the torque constant that it believes in.
-  double drive_torque_Nm() const { return motor_.believed_Nm(drive_Nm_); }
+  double drive_torque_Nm() const { return motor_.believed_Nm(drive_Nm_ - offset_Nm_); }
 
   const model::ActuatorParameters& parameters() const { return parameters_; }
 
@@ -92,7 +92,7 @@ class ActuatorModel {
   actuator::Shaft shaft_;
   actuator::Warmth warmth_;
   actuator::ResidualAction residual_;
-  double drive_Nm_ = 0.0;
+  double drive_Nm_ = 0.0, offset_Nm_ = 0.0;  // with the offset, and the offset as long as the drive is on
   // Of the drive, in this step; followed only where a residual torque acts, who alone reads them.
   double command_rad_ = 0.0, error_rad_ = 0.0, output_ = 0.0;
   double transmitted_Nm_ = 0.0;  // through the gear, in the step before

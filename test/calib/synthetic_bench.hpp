@@ -96,9 +96,11 @@ inline void write_bench(const std::filesystem::path& folder, const std::vector<c
     }
     rows << fmt::format("{},{},{},{},{},{}\n", run.file, run.trajectory, run.repeat, run.kp, run.kd, mass_kg);
     std::ofstream csv(folder / "runs" / run.file);
-    csv << "t_s,q_cmd_rad,q_rad\n";
-    for (std::size_t k = 0; k < run.recording.t_s.size(); ++k) {
-      csv << fmt::format("{},{},{}\n", run.recording.t_s[k], run.recording.q_cmd_rad[k], run.recording.q_rad[k]);
+    const bench::Recording& r = run.recording;
+    csv << "t_s,q_cmd_rad,q_rad" << (r.enabled.empty() ? "\n" : ",enabled\n");
+    for (std::size_t k = 0; k < r.t_s.size(); ++k) {
+      csv << fmt::format("{},{},{}", r.t_s[k], r.q_cmd_rad[k], r.q_rad[k]);
+      csv << (r.enabled.empty() ? "\n" : r.enabled[k] ? ",1\n" : ",0\n");
     }
   }
 }

@@ -141,6 +141,30 @@ TEST_F(Judged, WhatExplainsNearlyAllOfTheRestMayBeSmallBesideTheBeginning) {
   EXPECT_NE(at.objection(trial), "");
 }
 
+/// Friction that differs a little by direction has the name of the friction, however sure the difference is.
+TEST_F(Judged, AFormWithAFurtherNumberTakesNoNameForALittle) {
+  constexpr double kSecondEffectsShare = 0.1;
+  for (const double asymmetry : {0.1, 0.9}) {
+    calib::JointModel truth = truth_;
+    truth.actuator.friction.stribeck_Nm = 0.3, truth.actuator.friction.stribeck_rad_s = 0.3;
+    truth.actuator.friction.stribeck_asymmetry = asymmetry;
+    const effects::NestedFit runs(test::record(bench_, truth, 6, 2e-4), 1);
+    fit_ = &runs;
+    const EffectSearch at = search({}, kSecondEffectsShare);
+    const Extension plain = extension(at, "stribeck", 0.3);
+    Extension by_direction{{"direction_friction"}, {}, {}, {{"direction_friction", 2}}, {}};
+    ASSERT_EQ(effects::form_of("direction_friction", by_direction.forms).name, "stribeck");
+    calib::Unknowns unknowns;
+    for (const std::string& name : effects::form_of("direction_friction", by_direction.forms).parameters)
+      unknowns.push_back(effects::unknown(name, bench_, at.base_model().scale));
+    by_direction.fitted = runs.fit(plain.fitted.model, unknowns, 10);
+    runs.linearise(by_direction.fitted);
+    by_direction.held_out = runs.held_out_squares(by_direction.fitted, folds(runs));
+    EXPECT_GT(at.compared(plain, by_direction).deviations, 3.0) << "the difference is there";
+    EXPECT_EQ(at.is_superfluous(convincing("direction_friction", by_direction), plain, "stribeck"), asymmetry < 0.5);
+  }
+}
+
 TEST_F(Judged, TwoNamesOfOneTorqueAreNotBothTaken) {
   fit_ = &moving_;
   const EffectSearch at = search();

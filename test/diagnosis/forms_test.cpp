@@ -68,7 +68,7 @@ TEST(Forms, EveryStartOfEveryFormCanBeSimulatedAndShows) {
     const Joint joint(law);
     const auto without = joint.rollouts(joint.model);
     effects::BenchScale scale = effects::scale_of(joint.bench, joint.runs, joint.model);
-    scale.quantum_rad = 0.01;
+    scale.quantum_rad = 0.01, scale.switches_off = true;
     for (const Effect& effect : effects::catalogue()) {
       for (const Form& form : effect.forms) {
         bool shows = false;
@@ -227,6 +227,59 @@ TEST_F(FormsOfABench, ACurrentLimitBelowTheKnownOneIsALimitOfTorqueAtAnySpeed) {
   EXPECT_TRUE(cause.form == "torque" || std::ranges::find(open, "torque") != open.end())
       << cause.form << ": a line whose speed without load is far beyond the recorded ones is the same";
   EXPECT_NEAR(cause.parameters.front().estimate.value, 8.0, 0.4);
+}
+
+void expect_in_its_interval(const Cause& cause, const std::string& parameter, double planted) {
+  for (const evidence::ParameterEstimate& one : cause.parameters) {
+    if (one.name != parameter) continue;
+    EXPECT_LT(one.estimate.low, planted) << parameter;
+    EXPECT_GT(one.estimate.high, planted) << parameter;
+    return;
+  }
+  ADD_FAILURE() << "no " << parameter;
+}
+
+TEST_F(FormsOfABench, ABeltIsAComplianceThatGivesWayOtherwiseOnTheWayBack) {
+  const Diagnosis found = diagnosed([](model::ActuatorParameters& p) {
+    p.transmission.stiffness_Nm_per_rad = 150.0;
+    p.transmission.damping_Nm_s_per_rad = 1.5;
+    p.transmission.hysteretic_share = 0.6;
+    p.transmission.hysteresis_rad = 0.015;
+  });
+  ASSERT_EQ(found.causes.size(), 1U);
+  const Cause& cause = found.causes.front();
+  EXPECT_EQ(cause.effect, "compliance");
+  EXPECT_EQ(cause.form, "belt");
+  expect_in_its_interval(cause, "transmission.stiffness_Nm_per_rad", 150.0);
+  expect_in_its_interval(cause, "transmission.hysteretic_share", 0.6);
+  expect_in_its_interval(cause, "transmission.hysteresis_rad", 0.015);
+}
+
+/// A drive that pushes to one side lets go where it is switched off; a spring doesn't.
+TEST_F(FormsOfABench, ATorqueThatEndsWithTheDriveIsTheDrives) {
+  for (const bool of_drive : {true, false}) {
+    calib::JointModel truth = dry_joint();
+    (of_drive ? truth.actuator.drive.offset_Nm : truth.actuator.ripple.offset_Nm) = 0.4;
+    const bench::Bench bench = test::pd_bench(true);
+    std::vector<calib::SingleJoint> joints;
+    for (const calib::SingleJoint& joint : test::record(bench, truth, 6, 2e-4)) {
+      bench::BenchRun run = joint.run();
+      const std::size_t samples = run.recording.t_s.size();
+      for (std::size_t k = 0; k < samples; ++k) run.recording.enabled.push_back(3 * k < 2 * samples);
+      run.recording.q_rad = calib::SingleJoint(bench, run, joint.step_s()).rollout(truth);
+      joints.emplace_back(bench, run, joint.step_s());
+    }
+    fs::remove_all(folder_);
+    test::write_bench(folder_, joints);
+    DiagnoseOptions options;
+    options.model = dry_joint().actuator;
+    const Diagnosis found = diagnose(bench::read_bench(folder_), options);
+    ASSERT_EQ(found.causes.size(), 1U);
+    EXPECT_EQ(found.causes.front().effect, "offset");
+    EXPECT_EQ(found.causes.front().form, of_drive ? "drive" : "constant");
+    EXPECT_TRUE(found.causes.front().form_or_instead.empty());
+    expect_in_its_interval(found.causes.front(), of_drive ? "drive.offset_Nm" : "ripple.offset_Nm", 0.4);
+  }
 }
 
 TEST_F(FormsOfABench, TheSimplestFormStandsWhereItIsTheTruth) {

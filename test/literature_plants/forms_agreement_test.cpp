@@ -230,6 +230,16 @@ std::vector<Pair> pairs() {
          m.transmission.hardening_Nm_per_rad3 = p.transmission.hardening_Nm_per_rad3 = 1e4;
        },
        8e-3},
+      {"OffsetOfTheDrive", "drive.offset_Nm",
+       [](auto& m, auto& p) { m.drive.offset_when_on_Nm = p.drive.offset_Nm = 0.5; }},
+      {"Belt", "transmission.hysteretic_share",
+       [](auto& m, auto& p) {
+         spring(m, p);
+         m.transmission.stiffness_Nm_per_rad = p.transmission.stiffness_Nm_per_rad = 120.0;  // with less it swings up
+         m.transmission.belt_share = p.transmission.hysteretic_share = 0.6;
+         m.transmission.belt_width_rad = p.transmission.hysteresis_rad = 0.02;
+       },
+       8e-3},
       {"SensorBeforeTheGear", "sensor.on_motor",
        [](auto& m, auto& p) {
          spring(m, p);

@@ -90,13 +90,15 @@ std::vector<Form> strange_forms() {
          m.friction.bristle_rad = draw.spread(0.05, 0.3);
          return {};
        }},
-      {"belt", "hysteresis of a belt", "Bouc 1967; Wen 1976", kAny,
+      {"compliance", "belt with hysteresis", "Bouc 1967; Wen 1976", kAny,
        [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
          m.transmission.stiffness_Nm_per_rad = rig.scale_Nm() / draw.spread(0.03, 0.08);
          m.transmission.damping_Nm_s_per_rad = 0.01 * m.transmission.stiffness_Nm_per_rad;
          m.transmission.belt_share = draw.uniform(0.4, 0.7);
          m.transmission.belt_width_rad = draw.uniform(0.01, 0.03);
-         return {};
+         return {{"transmission.stiffness_Nm_per_rad", kIs, m.transmission.stiffness_Nm_per_rad},
+                 {"transmission.hysteretic_share", kIs, m.transmission.belt_share},
+                 {"transmission.hysteresis_rad", kIs, m.transmission.belt_width_rad}};
        }},
       {"loose_screw", "a mass that creeps outwards", "Junker 1969", kWeight,
        [](Draw& draw, const Rig&, Machine& m) -> Planted {

@@ -47,7 +47,7 @@ const std::vector<Form> kOffset = {
     {"offset", "of the current sensor: only while the drive is on", "Chung, Sul 1998", kOwnDrive,
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
        m.drive.offset_when_on_Nm = draw.sign() * draw.spread(0.05, 0.3) * rig.scale_Nm();
-       return {};
+       return {{"drive.offset_Nm", kIs, m.drive.offset_when_on_Nm}};
      }},
 };
 

@@ -2,18 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "planting.hpp"
 
 namespace pmg::literature {
 
 std::string forms_table() {
   std::vector<Form> all = catalogue_forms();
-  const std::vector<Form> strange = strange_forms();
-  const std::size_t of_catalogue = all.size();
-  all.insert(all.end(), strange.begin(), strange.end());
+  for (const Form& form : strange_forms()) {
+    const auto same = std::find_if(all.rbegin(), all.rend(),
+                                   [&](const Form& other) { return other.effect == std::string(form.effect); });
+    all.insert(off_catalogue(form) ? all.end() : same.base(), form);
+  }
   std::string text = "| effect | forms |\n|---|---|\n", effect;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const Form& form = all[i];
+  for (const Form& form : all) {
     const std::string one = fmt::format("{} ({})", form.form, form.source);
     if (effect == form.effect) {
       text += "; " + one;
@@ -21,7 +24,7 @@ std::string forms_table() {
     }
     if (!effect.empty()) text += " |\n";
     effect = form.effect;
-    text += fmt::format("| {}`{}` | {}", i < of_catalogue ? "" : "off the catalogue: ", effect, one);
+    text += fmt::format("| {}`{}` | {}", off_catalogue(form) ? "off the catalogue: " : "", effect, one);
   }
   return text + " |\n";
 }

@@ -123,6 +123,11 @@ std::vector<Form> catalogue_forms() {
   return all;
 }
 
+bool off_catalogue(const Form& form) {
+  const std::vector<Form> all = catalogue_forms();
+  return std::ranges::none_of(all, [&](const Form& known) { return known.effect == std::string(form.effect); });
+}
+
 /// Dry friction c (1 + a) one way and c (1 - a) the other is friction c and a constant torque -a c, unless c varies.
 /// Torque that fades is a drift, whichever clock it follows. A constant torque that ends with the drive is one while it
 /// is on.
@@ -155,7 +160,8 @@ LiteraturePlant plant_of(std::uint64_t seed) {
     const bool faulty = turn.stratum == Stratum::kFault;
     const std::size_t kind = faulty ? in_turn(std::size(kFaultKinds), turn.count, seed, 4) : 0;
     LiteraturePlant plant = plant_forms(forms, seed, attempt, draw, faulty ? needs_of_fault(kind) : RigNeeds{});
-    plant.stratum = turn.stratum;
+    const bool known = turn.stratum == Stratum::kStrange && !off_catalogue(forms.front());
+    plant.stratum = known ? Stratum::kSingle : turn.stratum;
     if (faulty) plant.faults.push_back(draw_fault(draw, kind, plant.rig));
     plant.sound_rig = plant.rig;
     if (faulty) plant.rig = with_fault(plant.faults.front(), plant.sound_rig);

@@ -39,8 +39,10 @@ struct Form {
 
 /// All forms of the catalogue's effects; those of one effect stand together.
 std::vector<Form> catalogue_forms();
-/// What no catalogue knows.
+/// What takes turns in the stratum "strange": what no catalogue knows, and a belt, which came to the catalogue after
+/// the turns were set. It is a single effect.
 std::vector<Form> strange_forms();
+bool off_catalogue(const Form& form);
 
 /// Names by which the planted form may be called as well, because the torque is the same on this rig.
 std::vector<std::string> same_here(const Form& form, const Machine& machine);

@@ -86,5 +86,30 @@ TEST(ActuatorTransmission, HardensWithTheCubeOfItsTwist) {
   }
 }
 
+/// A belt whose hysteresis has levelled off carries stiffness ((1 - share) x + share hysteresis) on the way out, and as
+/// much less on the way back.
+TEST(ActuatorTransmission, ABeltGivesWayOtherwiseOnTheWayBack) {
+  const auto parameters = with([](auto& p) {
+    p.sensor.on_motor = 1.0;
+    p.transmission.armature_kg_m2 = 0.05;
+    p.transmission.stiffness_Nm_per_rad = 50.0;
+    p.transmission.hysteretic_share = 0.6;
+    p.transmission.hysteresis_rad = 0.004;
+    p.transmission.damping_Nm_s_per_rad = 1.0;
+  });
+  OneJoint joint(parameters);
+  double out_rad = 0.0, back_rad = 0.0;
+  constexpr int kSteps = 20000;
+  for (int k = 0; k < kSteps; ++k) {
+    joint.step({.kp = 5000.0, .kd = 50.0}, 2.0 - std::abs(2.0 - 4.0 * k / kSteps));
+    if (k == kSteps / 4) out_rad = joint.q_rad - joint.reading_rad();
+    if (k == kSteps * 3 / 4) back_rad = joint.q_rad - joint.reading_rad();
+  }
+  // 50 (0.4 x +- 0.6 * 0.004) Nm is 1 Nm
+  EXPECT_NEAR(out_rad, (1.0 - 0.12) / 20.0, 5e-4);
+  EXPECT_NEAR(back_rad, (1.0 + 0.12) / 20.0, 5e-4);
+  EXPECT_NEAR(sim::ActuatorModel::joint_rad(parameters, 0.0, -1.0), (1.0 - 0.12) / 20.0, 1e-6);
+}
+
 }  // namespace
 }  // namespace pmg::test

@@ -124,7 +124,8 @@ class ActuatorModel:
         if not enabled:
             return self.motor.idle(speed, unit)
         output, speed_gain = self.law.step(told, seen, supply, self.sensor.prompt_speed)
-        return self.motor.step(output, speed_gain, self.law.standing_output(), supply, speed, unit)
+        torque, slope = self.motor.step(output, speed_gain, self.law.standing_output(), supply, speed, unit)
+        return torque + self.p["drive.offset_Nm"], slope
 
     def _residual(self, kp, supply, enabled, temperature_C, angle, speed, driven) -> Given:
         p, limit = self.p, self.p["drive.limit"]

@@ -69,14 +69,21 @@ class Shaft:
         self.used = bool(self.elastic.any())
         self.stiffness = torch.where(self.elastic, p["transmission.stiffness_Nm_per_rad"], 0.0)
         self.rotor, self.rotor_speed = states.new("rotor"), states.new("rotor_speed")
+        self.belt = has(p, "transmission.hysteretic_share")
+        self.wound, self.bend = states.new("wound"), states.new("belt_bend")
 
     def reset(self, put, q) -> None:
         put(self.rotor, q)
-        put(self.rotor_speed, torch.zeros_like(q))
+        for state in (self.rotor_speed, self.wound, self.bend):
+            put(state, torch.zeros_like(q))
 
     def step(self, torque, slope, q, dq) -> tuple[torch.Tensor, torch.Tensor]:
         """(the motor's torque and slope, the joint's angle and speed) => torque on the joint and its slope. Moves the rotor."""
         p, h = self.p, self.step_s
+        if self.belt:
+            now = self._wound(self.rotor - q)
+            self.bend.copy_(self._bend(now))
+            self.wound.copy_(now)
         before, before_slope = self._torque(self.rotor_speed, q, dq)
         inertia = p["transmission.armature_kg_m2"] / h - slope + before_slope
         speed = self.rotor_speed + (torque - before) / torch.where(self.elastic, inertia, 1.0)
@@ -85,15 +92,28 @@ class Shaft:
         self.rotor.copy_(torch.where(self.elastic, self.rotor + h * speed, q))
         return after, -after_slope
 
+    def _wound(self, twist) -> torch.Tensor:
+        """The twist beyond the play."""
+        return twist - clamped(twist, 0.5 * self.p["transmission.backlash_rad"])
+
+    def _bend(self, wound) -> torch.Tensor:
+        """The bend of a belt that has wound evenly from where it was to here."""
+        most = torch.copysign(self.p["transmission.hysteresis_rad"], wound - self.wound)
+        return most + (self.bend - most) * torch.exp(-(wound - self.wound).abs() / self.p["transmission.hysteresis_rad"])
+
     def _torque(self, rotor_speed, q, dq) -> tuple[torch.Tensor, torch.Tensor]:
         """Torque on the joint and its slope in the relative speed."""
-        half_play, damping = 0.5 * self.p["transmission.backlash_rad"], self.p["transmission.damping_Nm_s_per_rad"]
+        p, damping = self.p, self.p["transmission.damping_Nm_s_per_rad"]
         relative = rotor_speed - dq
-        twist = self.rotor - q + self.step_s * relative
-        wound = twist - clamped(twist, half_play)
-        square = self.p["transmission.hardening_Nm_per_rad3"] * wound**2
+        wound = self._wound(self.rotor - q + self.step_s * relative)
+        square = p["transmission.hardening_Nm_per_rad3"] * wound**2
         torque, slope = (self.stiffness + square) * wound + damping * relative, (self.stiffness + 3 * square) * self.step_s + damping
         grips = wound != 0
+        if self.belt:
+            bend, share = self._bend(wound), p["transmission.hysteretic_share"] * self.stiffness
+            torque = torque + share * (bend - wound)
+            slope = slope - share * bend / torch.copysign(p["transmission.hysteresis_rad"], wound - self.wound) * self.step_s
+            grips = grips | ((self.bend != 0) & (p["transmission.backlash_rad"] == 0))
         return torch.where(grips, torque, 0.0), torch.where(grips, slope, 0.0)
 
 
