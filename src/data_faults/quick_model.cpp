@@ -123,13 +123,9 @@ calib::Unknowns QuickModel::unknowns(const std::vector<calib::SingleJoint>& runs
   if (!voltage) calib::add_missing(names, {"friction.viscous_Nm_s_per_rad"});  // a servo's back-EMF damps
   calib::add_missing(names, {"command.delay_s", "ripple.offset_Nm"});
   if (bench_->law == bench::DriveLaw::kCascadePd) calib::add_missing(names, {"drive.torque_per_unit_Nm"});
-  const bool switched_off = std::any_of(runs.begin(), runs.end(), [](const calib::SingleJoint& joint) {
-    const std::vector<bool>& enabled = joint.run().recording.enabled;
-    return std::find(enabled.begin(), enabled.end(), false) != enabled.end();
-  });
-  if (voltage && switched_off) names.emplace_back("drive.brake_when_disabled");
-  calib::add_missing(names, extra);
   const effects::BenchScale scale = effects::scale_of(*bench_, runs, start_);
+  if (voltage && scale.switches_off) names.emplace_back("drive.brake_when_disabled");
+  calib::add_missing(names, extra);
   calib::Unknowns found;
   for (const std::string& name : names) {
     calib::Unknown u = effects::unknown(name, *bench_, scale);

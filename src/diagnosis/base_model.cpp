@@ -53,21 +53,13 @@ calib::Unknown presliding(const bench::Bench& bench, const JointDiagnosisOptions
   return u;
 }
 
-bool sometimes_off(const effects::NestedFit& fit) {
-  return std::ranges::any_of(fit.runs(), [](const calib::SingleJoint& joint) {
-    const std::vector<bool>& enabled = joint.run().recording.enabled;
-    return std::ranges::find(enabled, false) != enabled.end();
-  });
-}
-
-calib::Unknowns constants(const bench::Bench& bench, const effects::NestedFit& fit,
-                          const JointDiagnosisOptions& options, const BaseModel& base) {
+calib::Unknowns constants(const bench::Bench& bench, const JointDiagnosisOptions& options, const BaseModel& base) {
   const model::ActuatorParameters::Friction& friction = base.model.actuator.friction;
   const bool dry = friction.coulomb_Nm > 0.0 || friction.stribeck_Nm > 0.0 || friction.load_driving > 0.0 ||
                    friction.load_backdriving > 0.0;
   calib::Unknowns found;
   if (dry) found.push_back(presliding(bench, options, base));
-  if (bench.law == bench::DriveLaw::kServoVoltage && sometimes_off(fit))
+  if (bench.law == bench::DriveLaw::kServoVoltage && base.scale.switches_off)
     found.push_back(effects::unknown(kBrake, bench, base.scale));
   std::erase_if(found, [&](const calib::Unknown& u) { return calib::place_of(base.unknowns, u.name) >= 0; });
   return found;
@@ -129,7 +121,7 @@ BaseModel base_model(const bench::Bench& bench, const std::optional<model::Actua
     u.deviation = options.deviation_of_tolerance * share * std::abs(value);
     base.unknowns.push_back(u);
   }
-  base.constants = constants(bench, fit, options, base);
+  base.constants = constants(bench, options, base);
   const effects::NestedModel fitted = fit.fit(base.model, base.unknowns, kBaseIterations);
   base.model = fitted.model;
   free_constants(fit, options, noise_squares, fitted, base);
