@@ -125,6 +125,17 @@ Outcome best_factor(const Examined& e, std::size_t run, double sign) {
   return {sign * std::exp(best), lowest, {}};
 }
 
+/// True if a repeat of the run wants the factor, too: what comes again is no slip of one recording.
+bool repeats_want_it(const Examined& e, std::size_t run, double factor) {
+  const bench::BenchRun& one = e.runs()[run];
+  for (std::size_t other = 0; other < e.runs().size(); ++other) {
+    const bench::BenchRun& repeat = e.runs()[other];
+    if (other == run || repeat.trajectory != one.trajectory || !same_condition(repeat, one)) continue;
+    if (e.log_error()[other] - log_error_with(e, other, factor) > std::log(e.options().clear_gain)) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 bench::Column commanded_torque(const Examined& e) {
@@ -193,7 +204,8 @@ void try_commanded_torque(const Examined& e, std::size_t run, std::vector<Explai
     fault.evidence = {gain_text(e, before, after)};
     bool sure = before - after > std::log(e.options().clear_gain) && mends(e, run, before, after);
     // A run in another load's row needs another torque, too.
-    if (fault.kind == Kind::kUnit) sure = sure && after < lowest_log_error_of_rows(e, run);
+    if (fault.kind == Kind::kUnit)
+      sure = sure && after < lowest_log_error_of_rows(e, run) && !repeats_want_it(e, run, unit.factor);
     into.push_back({fault, before - after, sure});
   }
 }

@@ -396,6 +396,9 @@ std::vector<DataFault> gain_fault(const Examined& e) {
   const Tried common = groups.common();
   const double whole = common.factor * common.fit.model.actuator.drive.kp_scale;
   if (!beyond(whole, e.options().least_common_gain)) return {};
+  // A joint that does something else is best hidden by a gain.
+  if (const double floors = e.floors(common.fit); std::isfinite(floors) && floors > e.options().largest_usual_error)
+    return {};
   DataFault fault = gain_text(e, "kp_Nm_per_rad", 0.0, whole, common);
   fault.evidence = {fmt::format("load and inertia of bench.yaml need {:.3g} times the gain", whole)};
   fault.fixes = {{.files = {}, .columns = {}, .kp_factor = whole}};

@@ -135,7 +135,8 @@ class JointDiagnosisRun {
       scored = calib::with_step(bench_, scored, step.error.step_s);
     }
     if (!small_error())
-      diagnosis_.noise_floor = calib::with_integration_error(noise_, error_in(searched(fitted), base.model, base));
+      diagnosis_.noise_floor =
+          calib::with_integration_error(noise_, error_in(searched(fitted), base.model, base, step.error.rms_rad));
     return base;
   }
 
@@ -144,20 +145,21 @@ class JointDiagnosisRun {
     return diagnosis_.step.limit == calib::StepLimit::kError || diagnosis_.step.limit == calib::StepLimit::kResidual;
   }
 
-  /// The integrator's error as far as the residual may be made of it: at most the residual, and at most the error. A
-  /// given step may have an error beyond the residual, most of which the base model's numbers have taken up.
-  double error_in(const effects::NestedFit& fit, const calib::JointModel& model, const BaseModel& base) const {
-    return std::min(diagnosis_.step.error.rms_rad, effects::integration_part_rms(bench_, fit, model, base.unknowns));
+  /// An integrator's error as far as the residual may be made of it. A given step may have an error beyond the
+  /// residual, most of which the base model's numbers have taken up.
+  double error_in(const effects::NestedFit& fit, const calib::JointModel& model, const BaseModel& base,
+                  double error_rad) const {
+    return std::min(error_rad, effects::integration_part_rms(bench_, fit, model, base.unknowns));
   }
 
-  /// (mean square that remains beyond the noise): what is left of the integrator's error counts as noise. An error that
-  /// was small beside the base model's residual counts as far as there is a rest that it may have made. None counts
-  /// where the recordings are no finer than the step.
+  /// (mean square that remains beyond the noise): the final model's integration error counts as noise as far as the
+  /// rest may be made of it. None counts where the recordings are no finer than the step.
   void count_integration_error(double rest_squares, const effects::NestedFit& fit, const BaseModel& base) {
-    double error_rad = std::min(diagnosis_.step_error_after.rms_rad, std::sqrt(rest_squares));
-    if (!small_error()) error_rad = error_in(fit, diagnosis_.after, base);
-    if (diagnosis_.step.limit == calib::StepLimit::kResidual) error_rad = 0.0;
-    diagnosis_.noise_floor = calib::with_integration_error(noise_, error_rad);
+    double error_rad = diagnosis_.step.error.rms_rad;
+    if (small_error()) error_rad = std::min(diagnosis_.step_error_after.rms_rad, std::sqrt(rest_squares));
+    const bool counts = diagnosis_.step.limit != calib::StepLimit::kResidual;
+    diagnosis_.noise_floor =
+        calib::with_integration_error(noise_, counts ? error_in(fit, diagnosis_.after, base, error_rad) : 0.0);
   }
 
   /// The search's result, and its fit with priors to all runs. Effects whose numbers are unsure on all runs leave.

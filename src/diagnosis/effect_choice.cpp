@@ -216,6 +216,7 @@ void EffectSearch::free_constant(const calib::Unknown& constant, const Extension
   without_.clear();  // fits and screens with the constant as it was
   alternatives_.clear();
   latest_look_.reset();
+  forms_compared_at_.clear();
 }
 
 /// Why an effect vanishes where a constant of the model is fitted in its place, or "". The constant is free from then
@@ -237,17 +238,15 @@ std::string EffectSearch::made_of_constant(const Extension& chosen, const Extens
   return "";
 }
 
-/// (chosen extension) => (the same with a constant of the model free that the runs ask for by the rules for an effect).
-std::optional<Extension> EffectSearch::with_a_constant_asked_for(const Extension& chosen) {
-  if (!leaves_rest(chosen)) return std::nullopt;
+/// (chosen extension) => (the same with a constant of the model free that predicts runs left out better). It is no
+/// cause: however little it explains, the effects' numbers and their rivals would have to make up for it.
+std::optional<Extension> EffectSearch::with_a_constant_that_shows(const Extension& chosen) {
   for (const calib::Unknown& constant : calib::Unknowns(base_.constants)) {
     if (!going(fmt::format("trying {} beside the effects", constant.name))) return std::nullopt;
     Extension other = with_constant(constant, chosen.effects, chosen.forms, chosen.fitted.model);
-    const Trial gain = trial(chosen, other, constant.name);
-    if (gain.comparison.deviations < options_.least_deviations || gain.share_of_rest < options_.scratch_gain_of_rest)
-      continue;
+    if (compared(chosen, other).deviations < options_.least_deviations) continue;
     free_constant(constant, other);
-    return other;
+    return in_best_forms(exchanged(std::move(other)));
   }
   return std::nullopt;
 }
@@ -300,7 +299,7 @@ Settled EffectSearch::settled(Extension chosen) {
       chosen = leave_out(chosen, weakest, why);
       continue;
     }
-    std::optional<Extension> with = with_a_constant_asked_for(chosen);
+    std::optional<Extension> with = with_a_constant_that_shows(chosen);
     if (!with) return {std::move(chosen), std::move(with_priors)};
     chosen = *std::move(with);
   }

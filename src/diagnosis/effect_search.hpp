@@ -137,7 +137,7 @@ class EffectSearch {
   Extension with_constant(const calib::Unknown& constant, const std::vector<std::string>& effects,
                           const effects::Forms& forms, const calib::JointModel& start);
   void free_constant(const calib::Unknown& constant, const Extension& with);
-  std::optional<Extension> with_a_constant_asked_for(const Extension& chosen);
+  std::optional<Extension> with_a_constant_that_shows(const Extension& chosen);
   std::string made_of_constant(const Extension& chosen, const Extension& without, const std::string& effect);
   std::string made_of_step(const Extension& chosen, const Trial& last, double step_error_rad);
   Extension extend(const std::vector<std::string>& effects, const effects::Forms& forms,

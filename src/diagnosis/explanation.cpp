@@ -40,7 +40,9 @@ class Explaining {
         chosen_(chosen),
         from_(from),
         noise_squares_(std::pow(from.noise.rms_rad, 2)),
-        intervals_(parameter_intervals(from.fitted, folds(from.all), noise_squares_, from.options.intervals)) {}
+        intervals_(
+            effects::told(parameter_intervals(from.fitted, folds(from.all), noise_squares_, from.options.intervals),
+                          from.fitted, from.options.intervals)) {}
 
   Explanation run() {
     std::vector<std::pair<double, Cause>> causes;

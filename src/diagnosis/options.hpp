@@ -29,6 +29,11 @@ struct JointDiagnosisOptions {
   work::Threshold least_folds_won{0.6, "", "and if it is better in this share of the folds", kPlants};
   work::Threshold amplitude_of_noise{1.2, "", "and if the square root of its gain is so many times the noise", kPlants};
   work::Threshold amplitude_of_beginning{0.1, "", "and this share of the residual before any effect", kPlants};
+  work::Threshold mean_of_few_blocks{
+      10.0, "",
+      "from this ratio of that residual's mean square to its usual one, a few blocks have most of it, as where a joint "
+      "swings by itself: then the share of usual blocks counts as well",
+      "hidden plants with two effects"};
   work::Threshold gain_of_rest{0.35, "",
                                "and if its gain is this share of the residual beyond a correct model's: an effect "
                                "whose form isn't quite right leaves a rest that a second one could mend",
@@ -148,10 +153,10 @@ struct JointDiagnosisOptions {
   evidence::SignatureOptions signatures;
   residual_torque::Options extension;
 
-  PMG_THRESHOLDS(least_deviations, least_folds_won, amplitude_of_noise, amplitude_of_beginning, gain_of_rest,
-                 scratch_amplitude_of_noise, scratch_amplitude_of_beginning, scratch_gain_of_rest, nearly_all_of_rest,
-                 worse_deviations, one_torque, equal_gain, clearly_deviations, regained_share, stays_at_half_step,
-                 most_effects, apart_deviations, apart_share, fewest_apart_blocks, visible_share,
+  PMG_THRESHOLDS(least_deviations, least_folds_won, amplitude_of_noise, amplitude_of_beginning, mean_of_few_blocks,
+                 gain_of_rest, scratch_amplitude_of_noise, scratch_amplitude_of_beginning, scratch_gain_of_rest,
+                 nearly_all_of_rest, worse_deviations, one_torque, equal_gain, clearly_deviations, regained_share,
+                 stays_at_half_step, most_effects, apart_deviations, apart_share, fewest_apart_blocks, visible_share,
                  better_form_deviations, hopeless_form_deviations, remains_of_noise, remains_of_beginning,
                  coarser_quantum, quantum_of_noise, gain_tolerance, damping_tolerance, friction_tolerance,
                  load_tolerance, deviation_of_tolerance, constant_gain_of_rest, stiffer_presliding, softer_presliding,

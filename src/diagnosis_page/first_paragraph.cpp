@@ -173,7 +173,7 @@ std::string what_next(const Diagnosis& diagnosis) {
   const bool more = diagnosis.next_excitation && !diagnosis.next_excitation->runs.empty();
   if (diagnosis.verdict == evidence::Verdict::kAmbiguous && more)
     return fmt::format("To settle it, {}.", record_next(*diagnosis.next_excitation));
-  if (diagnosis.verdict == evidence::Verdict::kNone) return "Next: nothing to do.";
+  if (diagnosis.verdict == evidence::Verdict::kNone) return "Next: at the joint there is nothing to do.";
   if (!diagnosis.causes.empty()) {
     std::string text = fmt::format("Next: {}", effects::workshop_words(diagnosis.causes.front().effect).check);
     if (diagnosis.causes.size() > 1) text += " \"What to check\" has the rest.";
@@ -207,7 +207,8 @@ std::string first_paragraph(const bench::Bench& bench, const Diagnosis& diagnosi
   const char* corrected =
       diagnosis.data.corrected.empty()
           ? ""
-          : "The recordings have faults: they stand above. All that follows was computed from corrected recordings. ";
+          : "The recordings have faults: mend them as it says above. All that follows was computed from corrected "
+            "recordings. ";
   return fmt::format("{}{}{} {}{} {}", corrected, what_is_wrong(bench, diagnosis), how_sure(diagnosis),
                      what_it_costs(diagnosis), how_much_better(bench, diagnosis), what_next(diagnosis));
 }

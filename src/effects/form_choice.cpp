@@ -5,7 +5,9 @@
 #include <optional>
 
 #include "calib/unknown.hpp"
+#include "effects/period.hpp"
 #include "effects/strengths.hpp"
+#include "effects/unknowns.hpp"
 
 namespace pmg::effects {
 
@@ -32,6 +34,14 @@ std::vector<ScreenedStart> starts_of(const StartScreen& screen, const Effect& fa
   return found;
 }
 
+/// True if the form's fit may have ended beside its best, for lack of the effects that came later: rollouts get in and
+/// out of step with a period or an order, and a time constant may be another effect's.
+bool has_several_minima(const Form& form, const Extension& current) {
+  return current.effects.size() > 1 && std::ranges::any_of(form.parameters, [](const std::string& name) {
+           return is_period(name) || is_order(name) || calib::quantity(name) == model::Quantity::kTimeConstant;
+         });
+}
+
 /// The extension with the effect in another form; nothing where these recordings can't have it, or where it is far from
 /// explaining as much.
 std::optional<Extension> in_form(const ExtensionFits& fits, const StartScreen& screen, const Extension& current,
@@ -49,6 +59,17 @@ std::optional<Extension> in_form(const ExtensionFits& fits, const StartScreen& s
   return found;
 }
 
+/// The extension with the effect in its present form, from its best start beside the numbers that the other effects
+/// have by now.
+std::optional<Extension> again(const ExtensionFits& fits, const Extension& current, const Effect& family,
+                               std::size_t form, const FormLimits& limits) {
+  std::vector<std::string> others = current.effects;
+  std::erase(others, family.name);
+  const calib::JointModel rest = fits.without(current.fitted.model, family.name, others, current.forms);
+  const StartScreen screen(fits.fit(), fits.fit().fit(rest, fits.unknowns(others, current.forms), 0));
+  return in_form(fits, screen, current, family, form, limits);
+}
+
 }  // namespace
 
 bool told_apart(const SeenSeparation& seen, const ApartLimits& limits) {
@@ -64,9 +85,11 @@ Extension in_best_form(const ExtensionFits& fits, const Extension& current, cons
   const std::size_t present = taken == current.forms.end() ? 0 : taken->second;
   std::map<std::size_t, Extension> tried = {{present, current}};
   for (std::size_t form = 0; form < family.forms.size(); ++form) {
-    if (form == present) continue;
-    if (std::optional<Extension> other = in_form(fits, without, current, family, form, limits))
-      tried.emplace(form, std::move(*other));
+    if (form == present && !has_several_minima(family.forms[form], current)) continue;
+    std::optional<Extension> other = form == present ? again(fits, current, family, form, limits)
+                                                     : in_form(fits, without, current, family, form, limits);
+    if (!other || (form == present && !(other->fitted.squares < current.fitted.squares))) continue;
+    tried.insert_or_assign(form, *std::move(other));
   }
   const auto level = [&](const auto& one) { return fits.compare().mean_log_square(one.second.held_out.mean()); };
   const auto best =

@@ -137,6 +137,17 @@ std::vector<evidence::Interval> parameter_intervals(const NestedModel& model, co
   return found;
 }
 
+std::vector<evidence::Interval> told(std::vector<evidence::Interval> intervals, const NestedModel& model,
+                                     const IntervalOptions& options) {
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
+    auto& [value, low, high] = intervals[i];
+    const calib::Unknown& u = model.unknowns[i];
+    low = std::max(std::min(u.lower, low), value - options.told_width * (value - low));
+    high = std::min(std::max(u.upper, high), value + options.told_width * (high - value));
+  }
+  return intervals;
+}
+
 NestedModel with_wide_differences(const NestedFit& fit, NestedModel model, const std::vector<fitting::Fold>& folds,
                                   double noise_squares, const IntervalOptions& options) {
   for (int round = 0; round < static_cast<int>(options.widenings); ++round) {

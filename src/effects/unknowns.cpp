@@ -106,7 +106,7 @@ Usual usual(Quantity quantity, const BenchScale& scale) {
     case kPerTorque:
       return {0.3 / torque, 1.0 / peak};
     case kPerHeat:
-      return {0.1 / square, 1.0 / square, 10.0 * (0.1 / square), -10.0 * (0.1 / square)};
+      return {0.1 / square, 1.0 / square, 100.0 * (0.1 / square), -100.0 * (0.1 / square)};
     case kPerEnergy:
       return {per_energy, 1.0 / (0.1 * torque * speed * scale.duration_s), 100.0 * per_energy, -100.0 * per_energy};
     case kOutput:

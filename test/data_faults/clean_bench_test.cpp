@@ -44,6 +44,29 @@ TEST(SoundData, HaveNoFaultsUnderTorqueCommandsAndWithRepeats) {
   EXPECT_EQ(text(find_data_faults(repeated.bench, repeated.runs, std::nullopt, {}, 1)), "");
 }
 
+/// Where a profile limits the speed of commands, a gain of any size hides it best.
+TEST(SoundData, HaveNoWrongGainWhereCommandsAreSlow) {
+  for (const double rate_rad_s : {0.5, 1.0, 1.5}) {
+    test::RandomBench made = test::repeated_bench(33);
+    made.truth.actuator.command.rate_limit_rad_s = rate_rad_s;
+    test::play(made, 33, 1e-3);
+    EXPECT_EQ(text(find_data_faults(made.bench, made.runs, std::nullopt, {}, 1)), "") << rate_rad_s << " rad/s";
+  }
+}
+
+/// A feed-forward that is too large in a run and in its repeat is the joint's: a slip of one recording doesn't repeat.
+TEST(SoundData, HaveNoOtherUnitInARunAndItsRepeat) {
+  test::RandomBench made = test::with_repeats(test::cascade_bench(6), 6);
+  const std::string motion = made.runs.front().trajectory;
+  bench::correct(made.runs.front(), {.columns = {bench::Column::kFeedForward}, .factor = 4.0});
+  EXPECT_NE(text(find_data_faults(made.bench, made.runs, std::nullopt, {}, 1)), "");
+  for (bench::BenchRun& run : made.runs) {
+    if (run.trajectory == motion && run.file != made.runs.front().file)
+      bench::correct(run, {.columns = {bench::Column::kFeedForward}, .factor = 4.0});
+  }
+  EXPECT_EQ(text(find_data_faults(made.bench, made.runs, std::nullopt, {}, 1)), "");
+}
+
 /// A joint that sticks in most runs and moves in a few, as one does that sticks harder the longer it rests.
 test::RandomBench sticking_bench(unsigned seed) {
   test::RandomBench made = test::torque_bench(seed), stuck = made;

@@ -160,6 +160,27 @@ TEST(Forms, ParametersThatAFormFixesAreNotFitted) {
   EXPECT_EQ(names, (std::vector<std::string>{"friction.stribeck_Nm", "friction.stribeck_rad_s"}));
 }
 
+/// A fit that ended at a wrong period for lack of another effect doesn't stay there.
+TEST(Forms, AHoldIsLookedForAgainBesideAnEffectThatCameLater) {
+  Joint joint(bench::DriveLaw::kPositionPd);
+  calib::JointModel truth = joint.model;
+  truth.actuator.command.update_s = 0.046;
+  truth.actuator.ripple.offset_Nm = 0.3;
+  joint.runs = test::record(joint.bench, truth, 6, 1e-4);
+  const Fits of(joint);
+  const effects::Forms forms = {{"hold", 1}};
+  calib::JointModel start = joint.model;
+  start.actuator.command.update_s = 0.09;
+  const effects::Extension ended = of.fits.fitted({"hold", "offset"}, forms, start, 10);
+  ASSERT_GT(std::abs(ended.fitted.model.actuator.command.update_s - 0.046), 0.005);
+  const effects::StartScreen without(of.fit, of.fits.fitted({"offset"}, {}, joint.model, 10).fitted);
+  const effects::FormLimits limits{
+      .apart = {}, .better_deviations = 1.0, .hopeless_deviations = 4.0, .first_iterations = 4, .most_iterations = 10};
+  const effects::Extension found = effects::in_best_form(of.fits, ended, without, "hold", limits);
+  EXPECT_EQ(effects::form_of("hold", found.forms).name, "commands");
+  EXPECT_NEAR(found.fitted.model.actuator.command.update_s, 0.046, 0.046 * 0.046 / 12.0);
+}
+
 /// A joint whose hidden change is diagnosed from files.
 class FormsOfABench : public testing::Test {
  protected:

@@ -145,6 +145,15 @@ std::vector<calib::SingleJoint> on_a_shaking_table(const bench::Bench& bench, co
   return joints;
 }
 
+/// Chance makes some of the residual look like the error: less than half of it.
+TEST_F(Rules, TheStepsErrorDoesNotCountWhereTheResidualIsNotMadeOfIt) {
+  calib::JointModel truth;
+  truth.actuator = healthy_actuator();
+  const Diagnosis found = diagnose(written(on_a_shaking_table(bench_, truth)), given_healthy());
+  ASSERT_GT(found.step_error_after.rms_rad, 10.0 * 2e-4) << "far above the sensor's noise";
+  EXPECT_LT(found.noise_floor.rms_rad, 0.5 * found.step_error_after.rms_rad);
+}
+
 TEST_F(Rules, WhatNoEffectExplainsIsUnexplained) {
   calib::JointModel truth;
   truth.actuator = healthy_actuator();

@@ -82,6 +82,16 @@ TEST_F(TheBaseModel, HasAConstantFreeThatTheRunsAskForBesideTheEffects) {
   EXPECT_LT(settled.chosen.fitted.model.actuator.friction.presliding_rad, 3e-4);
 }
 
+/// What a verdict forgives is still made up for by the numbers of effects.
+TEST_F(TheBaseModel, HasAConstantFreeThatShowsHoweverLittleIsLeft) {
+  const effects::NestedFit fit(ideally(4), 1);
+  constexpr double kForgiven_rad = 1e-3;
+  EffectSearch search(bench_, fit, base(ideally(4), kUsual_rad),
+                      search_limits({}, kForgiven_rad * kForgiven_rad, false), {}, {}, {});
+  ASSERT_LT(search.usual_rest(search.base()), 5.0 * kForgiven_rad * kForgiven_rad);
+  EXPECT_LT(search.settled(search.base()).chosen.fitted.model.actuator.friction.presliding_rad, 3e-4);
+}
+
 TEST_F(TheBaseModel, GivesWayBeforeItSlidesWhereTheJointDoes) {
   const BaseModel found = base(giving_way(1.5e-3, 4), 1e-4);
   EXPECT_NEAR(found.model.actuator.friction.presliding_rad, 1.5e-3, 2e-4);

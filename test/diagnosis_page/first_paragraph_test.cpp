@@ -164,7 +164,8 @@ TEST(FirstParagraph, SaysThatTheRecordingsWereCorrected) {
   corrected.data.faults.push_back({.kind = data_faults::Kind::kUnit, .where = "column q_cmd_rad", .correction = ""});
   corrected.data.corrected = {0};
   EXPECT_THAT(paragraph_of(corrected),
-              testing::AllOf(HasSubstr("was computed from corrected recordings"), HasSubstr("stronger or weaker")));
+              testing::AllOf(HasSubstr("mend them"), HasSubstr("was computed from corrected recordings"),
+                             HasSubstr("stronger or weaker")));
 }
 
 TEST(FirstParagraph, PointsAtRunsThatContradictEachOther) {

@@ -98,6 +98,21 @@ TEST(Intervals, HaveAWidthWhereTheFitEndsAtTheEdgeOfItsRange) {
   EXPECT_GT(zero.high, 0.0);
 }
 
+TEST(Intervals, AreToldWiderThanTheyDecideWithinTheirRange) {
+  Fitted of("friction.coulomb_Nm", 1e-3, 1e-3);
+  of.number.lower = 0.17, of.number.upper = 10.0;
+  const NestedModel fitted = of.from(0.21);
+  IntervalOptions options;
+  options.told_width = 2.0;
+  const double value = fitted.model.actuator.friction.coulomb_Nm;
+  const evidence::Interval found = told({{value, value - 0.01, value + 0.02}}, fitted, options).front();
+  EXPECT_NEAR(found.low, value - 0.02, 1e-12);
+  EXPECT_NEAR(found.high, value + 0.04, 1e-12);
+  EXPECT_EQ(found.value, value);
+  EXPECT_EQ(told({{value, value - 0.1, value}}, fitted, options).front().low, value - 0.1) << "where it was beyond";
+  EXPECT_EQ(told({{value, 0.171, value}}, fitted, options).front().low, 0.17);
+}
+
 // Euler's steps of 4 ms act like 2 ms less delay; a fit makes up for them.
 TEST(Intervals, AreStudentsWithTheBlocksThatDetermineTheNumber) {
   const Fitted of("friction.coulomb_Nm", 1e-3, 1e-3);
