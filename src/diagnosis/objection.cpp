@@ -100,11 +100,10 @@ std::string EffectSearch::objection(const Trial& trial) const {
   if (amplitude < limits_.of_noise * std::sqrt(limits_.noise_squares))
     return "what it explains is small beside the noise";
   // A second effect that only mends the first one's form leaves a rest itself, or mends what a verdict forgives.
-  const bool ends_it = trial.share_of_rest >= options_.nearly_all_of_rest && trial.missed_alone;
   const double least = std::pow(limits_.of_beginning, 2), usual = usual_rest(base_extension_);
-  const bool few_blocks = beginning > options_.mean_of_few_blocks * usual;
-  const bool small = gain < least * beginning && !(few_blocks && c.usual_gain >= least * usual);
-  if (!ends_it && small) return "what it explains is small against the initial residual";
+  const bool few_blocks = beginning > options_.mean_of_few_blocks * usual && c.usual_gain >= least * usual;
+  const bool counts = trial.missed_alone && (few_blocks || trial.share_of_rest >= options_.nearly_all_of_rest);
+  if (gain < least * beginning && !counts) return "what it explains is small against the initial residual";
   if (trial.share_of_rest < limits_.of_rest) {
     return fmt::format("it explains {:.0f} % of what is left: model-form errors of other effects can explain as much",
                        100.0 * trial.share_of_rest);

@@ -146,10 +146,11 @@ TEST_F(Judged, WhatUsualBlocksShowIsNotSmallBesideAFewLargeOnes) {
   fit_ = &pushed_;
   constexpr double kOfBeginning = 0.1;
   JointDiagnosisOptions options;
-  const auto objection = [&](double times_enough) {
+  const auto objection = [&](double times_enough, bool missed_alone = true) {
     const EffectSearch at = search(options, kOfBeginning);
     Trial trial = convincing("offset", extension(at, "offset", 0.2));
     trial.share_of_rest = 0.5;
+    trial.missed_alone = missed_alone;
     trial.comparison.usual_gain = times_enough * kOfBeginning * kOfBeginning * at.usual_rest(at.base());
     trial.comparison.gain = 1e-12;
     return at.objection(trial);
@@ -157,6 +158,7 @@ TEST_F(Judged, WhatUsualBlocksShowIsNotSmallBesideAFewLargeOnes) {
   options.mean_of_few_blocks = 1.1;  // its mean is 1.2 times its usual square
   EXPECT_EQ(objection(1.1), "");
   EXPECT_NE(objection(0.9).find("small against the initial residual"), std::string::npos);
+  EXPECT_NE(objection(1.1, false).find("small against the initial residual"), std::string::npos);
   options.mean_of_few_blocks = 2.0;
   EXPECT_NE(objection(1.1).find("small against the initial residual"), std::string::npos);
 }
