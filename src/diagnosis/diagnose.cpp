@@ -52,7 +52,7 @@ class JointDiagnosisRun {
         direct_evidence(checks_, base.model.actuator, diagnosis_.noise_floor.rms_rad, base.scale.speed_rad_s, by_), by_,
         {.report = [this](double, std::string_view doing) { report(share_ + 0.02 * (0.9 - share_), doing); },
          .interrupted = progress_.interrupted});
-    auto [chosen, final_fit] = final_model(search, all);
+    auto [chosen, final_fit] = final_model(search, all, scored);
     for (const calib::Unknown& u : search.base_model().unknowns) diagnosis_.base_parameters.push_back(u.name);
     const bool differ_at_end = tell_assemblies(fitted, scored, final_fit, base, true);
     const effects::NestedFit of_assemblies(fitted, options_.threads);
@@ -162,8 +162,22 @@ class JointDiagnosisRun {
         calib::with_integration_error(noise_, counts ? error_in(fit, diagnosis_.after, base, error_rad) : 0.0);
   }
 
-  /// The search's result, and its fit with priors to all runs. Effects whose numbers are unsure on all runs leave.
-  std::pair<Extension, effects::NestedModel> final_model(EffectSearch& search, const effects::NestedFit& all) {
+  /// Why the effect leaves the extension if the scored runs are simulated no worse without it, or "".
+  std::string no_better(EffectSearch& search, const Extension& chosen, const std::string& name,
+                        const std::vector<calib::SingleJoint>& scored) const {
+    if (scored.empty()) return "";
+    const effects::NestedFit judged(scored, options_.threads);
+    const auto error_rad = [&](const Extension& with) {
+      return judged.blocks().absolutes(judged.residuals(with.fitted.model)).mean();
+    };
+    const bool better = error_rad(chosen) < error_rad(search.refit_without(chosen, name));
+    return better ? "" : "the recordings held out are simulated no better with it";
+  }
+
+  /// The search's result, and its fit with priors to all runs. Effects whose numbers are unsure on all runs leave, and
+  /// those that the scored runs are no better for.
+  std::pair<Extension, effects::NestedModel> final_model(EffectSearch& search, const effects::NestedFit& all,
+                                                         const std::vector<calib::SingleJoint>& scored) {
     const std::vector<fitting::Fold> all_folds = folds(all);
     for (Extension chosen = search.choose();;) {
       const Settled settled = search.settled(std::move(chosen));
@@ -179,7 +193,9 @@ class JointDiagnosisRun {
       std::string none, why;
       for (const std::string& name : chosen.effects) {
         if (search.measured(name) != nullptr) continue;
-        if (why = search.unsure(name, chosen.forms, fitted, &all_folds); !why.empty()) {
+        why = search.unsure(name, chosen.forms, fitted, &all_folds);
+        if (why.empty()) why = no_better(search, chosen, name, scored);
+        if (!why.empty()) {
           none = name;
           break;
         }

@@ -188,6 +188,28 @@ TEST_F(Rules, AModelThatMovesWhereTheJudgedJointRestsExplainsNothing) {
   }
 }
 
+TEST_F(Rules, WhatDoesNotHelpTheRecordingsHeldOutIsNoCause) {
+  calib::JointModel truth, pushed;
+  truth.actuator = pushed.actuator = healthy_actuator();
+  pushed.actuator.ripple.offset_Nm = 0.2;
+  for (const bool of_all : {false, true}) {
+    std::vector<calib::SingleJoint> joints = test::record(bench_, pushed, 4, 2e-4);
+    for (const calib::SingleJoint& joint : test::record(bench_, of_all ? pushed : truth, 6, 2e-4)) {
+      bench::BenchRun run = joint.run();
+      run.repeat = 1, run.trajectory += "_more", run.file = "more_" + run.file;
+      joints.emplace_back(bench_, run, joint.step_s());
+    }
+    DiagnoseOptions options = given_healthy();
+    options.fit = "repeat == 0", options.score = "repeat == 1";
+    options.data.handling = data_faults::Handling::kKeep;
+    const Diagnosis found = diagnose(written(joints), options);
+    const bool has_offset =
+        std::ranges::any_of(found.causes, [](const Cause& cause) { return cause.effect == "offset"; });
+    EXPECT_EQ(has_offset, of_all);
+    fs::remove_all(folder_);
+  }
+}
+
 TEST_F(Rules, UnexplainedMayHaveCausesBeside) {
   calib::JointModel truth;
   truth.actuator = healthy_actuator();
