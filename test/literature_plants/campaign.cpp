@@ -37,13 +37,17 @@ json kept(const diagnosis::Diagnosis& found) {
   return all;
 }
 
-/// With the recordings that the diagnosis asked for; null if it asked for none.
+/// With the recordings that the diagnosis asked for; null if it asked for none, or if they are no data of a joint.
 json diagnose_again(const diagnosis::Diagnosis& found, const PreparedPlant& prepared,
                     const std::filesystem::path& folder) {
   if (found.verdict != evidence::Verdict::kAmbiguous || !found.next_excitation) return nullptr;
   const LiteraturePlant plant = with_asked_runs(prepared.plant, *found.next_excitation);
   write_bench(folder, plant, plant.machine, 0, true);
-  return kept(diagnose(folder, prepared.base));
+  try {
+    return kept(diagnose(folder, prepared.base));
+  } catch (const files::ConfigError&) {  // the joint ran away under what was asked for
+    return nullptr;
+  }
 }
 
 /// Drops what a killed campaign left after the last whole line.
