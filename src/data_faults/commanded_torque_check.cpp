@@ -127,13 +127,9 @@ Outcome best_factor(const Examined& e, std::size_t run, double sign) {
 
 /// True if a repeat of the run wants the factor, too: what comes again is no slip of one recording.
 bool repeats_want_it(const Examined& e, std::size_t run, double factor) {
-  const bench::BenchRun& one = e.runs()[run];
-  for (std::size_t other = 0; other < e.runs().size(); ++other) {
-    const bench::BenchRun& repeat = e.runs()[other];
-    if (other == run || repeat.trajectory != one.trajectory || !same_condition(repeat, one)) continue;
-    if (e.log_error()[other] - log_error_with(e, other, factor) > std::log(e.options().clear_gain)) return true;
-  }
-  return false;
+  return std::ranges::any_of(repeats_of(e, run), [&](std::size_t repeat) {
+    return e.log_error()[repeat] - log_error_with(e, repeat, factor) > std::log(e.options().clear_gain);
+  });
 }
 
 }  // namespace

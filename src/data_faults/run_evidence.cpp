@@ -45,15 +45,21 @@ bool same_condition(const bench::BenchRun& a, const bench::BenchRun& b) {
   return a.kp == b.kp && a.kd == b.kd && a.load == b.load;
 }
 
-std::vector<std::size_t> siblings(const Examined& e, std::size_t run) {
+std::vector<std::size_t> repeats_of(const Examined& e, std::size_t run) {
   const bench::BenchRun& one = e.runs()[run];
-  std::vector<std::size_t> repeats, trajectory, others;
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < e.runs().size(); ++i) {
+    if (i != run && e.runs()[i].trajectory == one.trajectory && same_condition(e.runs()[i], one)) found.push_back(i);
+  }
+  return found;
+}
+
+std::vector<std::size_t> siblings(const Examined& e, std::size_t run) {
+  std::vector<std::size_t> repeats = repeats_of(e, run), trajectory, others;
   for (std::size_t i = 0; i < e.runs().size(); ++i) {
     if (i == run) continue;
     others.push_back(i);
-    if (e.runs()[i].trajectory != one.trajectory) continue;
-    trajectory.push_back(i);
-    if (same_condition(e.runs()[i], one)) repeats.push_back(i);
+    if (e.runs()[i].trajectory == e.runs()[run].trajectory) trajectory.push_back(i);
   }
   return !repeats.empty() ? repeats : !trajectory.empty() ? trajectory : others;
 }

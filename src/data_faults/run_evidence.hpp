@@ -35,6 +35,9 @@ std::string gain_text(const Examined& examined, double before, double after);
 /// The same gains and load.
 bool same_condition(const bench::BenchRun& a, const bench::BenchRun& b);
 
+/// The other runs of its trajectory, gains and load.
+std::vector<std::size_t> repeats_of(const Examined& examined, std::size_t run);
+
 /// Runs that physics treats like this one: its repeats; without repeats, the runs of its trajectory; else all others.
 std::vector<std::size_t> siblings(const Examined& examined, std::size_t run);
 

@@ -163,10 +163,9 @@ class JointDiagnosisRun {
   }
 
   /// Why the effect leaves the extension if the scored runs are simulated no worse without it, or "".
-  std::string no_better(EffectSearch& search, const Extension& chosen, const std::string& name,
-                        const std::vector<calib::SingleJoint>& scored) const {
-    if (scored.empty()) return "";
-    const effects::NestedFit judged(scored, options_.threads);
+  static std::string no_better(EffectSearch& search, const Extension& chosen, const std::string& name,
+                               const effects::NestedFit& judged) {
+    if (judged.runs().empty()) return "";
     const auto error_rad = [&](const Extension& with) {
       return judged.blocks().absolutes(judged.residuals(with.fitted.model)).mean();
     };
@@ -179,6 +178,7 @@ class JointDiagnosisRun {
   std::pair<Extension, effects::NestedModel> final_model(EffectSearch& search, const effects::NestedFit& all,
                                                          const std::vector<calib::SingleJoint>& scored) {
     const std::vector<fitting::Fold> all_folds = folds(all);
+    const effects::NestedFit judged(scored, options_.threads);
     for (Extension chosen = search.choose();;) {
       const Settled settled = search.settled(std::move(chosen));
       chosen = settled.chosen;
@@ -194,7 +194,7 @@ class JointDiagnosisRun {
       for (const std::string& name : chosen.effects) {
         if (search.measured(name) != nullptr) continue;
         why = search.unsure(name, chosen.forms, fitted, &all_folds);
-        if (why.empty()) why = no_better(search, chosen, name, scored);
+        if (why.empty()) why = no_better(search, chosen, name, judged);
         if (!why.empty()) {
           none = name;
           break;
