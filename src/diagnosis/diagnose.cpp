@@ -22,6 +22,8 @@ namespace pmg::diagnosis {
 
 namespace {
 
+constexpr const char* kNoBetterHeldOut = "the recordings held out are simulated no better with it";
+
 /// One diagnosis: reads the runs, fits, chooses effects, explains them, decides the verdict.
 class JointDiagnosisRun {
  public:
@@ -170,7 +172,7 @@ class JointDiagnosisRun {
       return judged.blocks().absolutes(judged.residuals(with.fitted.model)).mean();
     };
     const bool better = error_rad(chosen) < error_rad(search.refit_without(chosen, name));
-    return better ? "" : "the recordings held out are simulated no better with it";
+    return better ? "" : kNoBetterHeldOut;
   }
 
   /// The search's result, and its fit with priors to all runs. Effects whose numbers are unsure on all runs leave, and
@@ -298,11 +300,15 @@ class JointDiagnosisRun {
     diagnosis_.residual_extension = residual_torque::extend(
         {bench_, fit, all, from.fitted, from.held_out, search.base_model().scale}, by_.extension, progress_);
     residual_torque::Extension& found = *diagnosis_.residual_extension;
-    const calib::JointModel& with = found.kept ? found.model : diagnosis_.after;
-    const effects::HeldOutErrors errors = held_out_errors(*judged_, diagnosis_.after, *judged_, with, options_.seed);
-    found.held_out_before = errors.before;
-    found.held_out_after = errors.after;
+    const effects::HeldOutErrors errors =
+        held_out_errors(*judged_, diagnosis_.after, *judged_, found.model, options_.seed);
+    found.held_out_before = found.held_out_after = errors.before;
+    if (found.kept && diagnosis_.held_out && !(errors.after.value < errors.before.value)) {
+      found.kept = false;
+      found.why_not = kNoBetterHeldOut;
+    }
     if (!found.kept) return;
+    found.held_out_after = errors.after;
     diagnosis_.after = found.model;
     count_after(errors.after);
   }

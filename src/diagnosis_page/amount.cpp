@@ -106,11 +106,12 @@ std::string amount(const bench::Bench& bench, const Diagnosis& diagnosis, const 
   const auto [low, high] = std::pair<double, double>(std::minmax(shown.number(range.low), shown.number(range.high)));
   std::string text = fmt::format("{}{}{} {}", is_limit(first.name) ? "at most " : "",
                                  is_scale(first.name) && value > 0.0 ? "+" : "", two_digits(value), shown.unit);
-  if (std::isfinite(low) && std::isfinite(high) && two_digits(low) != two_digits(high))
+  const double without = shown.number(calib::value(diagnosis.before, first.name));
+  if (low < without && without < high)
+    text += fmt::format(", at most {}", two_digits(value > without ? high : low));
+  else if (std::isfinite(low) && std::isfinite(high) && two_digits(low) != two_digits(high))
     text += fmt::format(", between {} and {}", two_digits(low), two_digits(high));
-  if (has_before(diagnosis, first.name))
-    text +=
-        fmt::format("; the simulation has {}", two_digits(shown.number(calib::value(diagnosis.before, first.name))));
+  if (has_before(diagnosis, first.name)) text += fmt::format("; the simulation has {}", two_digits(without));
   return text;
 }
 

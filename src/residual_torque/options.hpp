@@ -9,7 +9,7 @@
 namespace pmg::residual_torque {
 
 // docs/explanation/hidden-plants.md
-inline constexpr std::string_view kPlants = "plants off the catalogue, even seeds 0 to 440";
+inline constexpr std::string_view kPlants = "plants off the catalogue, even seeds 0 to 1100";
 inline constexpr std::string_view kAssumed = "assumed; measured joints that no effect explains would settle it";
 inline constexpr std::string_view kCost = "time of a diagnosis";
 
@@ -33,11 +33,11 @@ struct Options {
                                 kCost};
   work::CountThreshold iterations{8, "", "Gauss-Newton iterations of such a fit", kCost};
   work::Threshold least_deviations{
-      2.0, "",
+      1.0, "",
       "a residual torque is kept if its mean gain over blocks left out (of rms errors) is so many of its standard "
       "deviations: less than a cause needs, because it names nothing",
       kPlants};
-  work::Threshold least_folds_won{0.6, "", "and if it is better in this share of the folds", kPlants};
+  work::Threshold least_folds_won{0.5, "", "and if it is better in this share of the folds", kPlants};
 
   PMG_THRESHOLDS(bound_of_peak, curve_knots, map_knots, map_modes, least_repeating, least_repeats, shortest_period_s,
                  fitted_candidates, worth_fitting, iterations, least_deviations, least_folds_won)

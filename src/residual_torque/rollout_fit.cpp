@@ -1,15 +1,37 @@
 #include "residual_torque/rollout_fit.hpp"
 
-#include <numeric>
+#include <cmath>
+#include <limits>
 
 namespace pmg::residual_torque {
 
 namespace {
 
-constexpr double kDifference = 0.02;  // of an amplitude's deviation: as wide as those of other torques
+constexpr double kShares[] = {1.0, 0.5, 0.2, 0.05};  // of a start
+constexpr double kDifference = 0.02;                 // of an amplitude's deviation: as wide as those of other torques
+constexpr double kEnough = 1e-3;
+constexpr int kMostSecants = 3;
 
 fitting::ResidualFunction residuals(const effects::NestedFit& fit, const RolloutFit& extended) {
   return [&fit, &extended](const Eigen::VectorXd& x) { return fit.residuals(extended.model_at(x)); };
+}
+
+/// (problem, start, how many of its last coordinates are amplitudes) => (the start with as much of these as rollouts
+/// bear). They follow from the torque along the recordings; a rollout that such a torque has thrown off its recording
+/// meets another one.
+Eigen::VectorXd nearest(const fitting::Problem& problem, const Eigen::VectorXd& start, Eigen::Index amplitudes) {
+  Eigen::VectorXd best = start;
+  double least = std::numeric_limits<double>::infinity();
+  for (const double share : kShares) {
+    Eigen::VectorXd there = start;
+    there.tail(amplitudes) *= share;
+    const double squares = fitting::sum_of_squares(problem.residuals(there)) +
+                           fitting::prior(problem.coordinates, there, problem.prior_weight).squares;
+    if (!(squares < least)) continue;
+    least = squares;
+    best = std::move(there);
+  }
+  return best;
 }
 
 }  // namespace
@@ -40,17 +62,15 @@ std::optional<RolloutFit> rollout_fit(const effects::NestedFit& fit, const effec
   found.prior_weight = without.squares / static_cast<double>(std::max<std::size_t>(1, fit.blocks().count()));
   fitting::Problem problem{
       .residuals = residuals(fit, found), .coordinates = found.ranges, .prior_weight = found.prior_weight};
-  const fitting::Residuals at_start = problem.residuals(found.coordinates);
-  if (at_start.empty()) return std::nullopt;
-  const fitting::Jacobian slopes = fitting::jacobian(problem, found.coordinates, at_start);
-  problem.known = &slopes;
-  problem.known_column.resize(static_cast<std::size_t>(others + modes));
-  std::iota(problem.known_column.begin(), problem.known_column.end(), 0);
-  const fitting::Minimum best =
-      fitting::gauss_newton(problem, found.coordinates, {.most_iterations = iterations, .relative_tolerance = 1e-3});
+  const fitting::Minimum best = fitting::gauss_newton(
+      problem, nearest(problem, found.coordinates, modes),
+      {.most_iterations = iterations, .relative_tolerance = kEnough, .most_secants = kMostSecants});
+  if (!std::isfinite(best.squares)) return std::nullopt;
   found.coordinates = best.x;
   found.squares = best.squares;
-  found.blocks = fit.blocks().normal_equations(problem.residuals(found.coordinates), slopes);
+  const bool known = !best.jacobian_at_x.empty();
+  found.blocks = fit.blocks().normal_equations(
+      best.residuals, known ? best.jacobian_at_x : fitting::jacobian(problem, best.x, best.residuals));
   return found;
 }
 

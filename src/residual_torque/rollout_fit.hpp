@@ -18,8 +18,8 @@ struct RolloutFit : fitting::LinearisedFit {
   calib::JointModel model_at(const Eigen::VectorXd& coordinates) const;
 };
 
-/// (runs, model without, start) => (fit, linearised at its start's Jacobian). Costs a rollout of every run for each
-/// coordinate, and one to three for each iteration. None if the start can't be simulated.
+/// (runs, model without, start) => (fit, linearised). Costs up to six rollouts of every run for each iteration, and one
+/// for each coordinate in the iterations that make their Jacobian anew. None if the start can't be simulated.
 std::optional<RolloutFit> rollout_fit(const effects::NestedFit& fit, const effects::NestedModel& without,
                                       const TorqueFit& start, double bound_Nm, int iterations);
 

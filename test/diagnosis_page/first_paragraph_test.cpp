@@ -101,7 +101,7 @@ TEST(FirstParagraph, SaysHowMuchInUnitsOfAWorkshop) {
               HasSubstr("dry friction (0.67 Nm, between 0.6 and 0.7; the simulation has 0.5)"));
   EXPECT_THAT(said("viscous", "friction.viscous_Nm_s_per_rad", {0.3, 0.28, 0.32}),
               HasSubstr("friction that grows with speed (1.5 times what the simulation has)"));
-  EXPECT_THAT(said("gain", "drive.torque_scale", {0.78, 0.7, 1.06}), HasSubstr("(-22 %, between -30 and 6)"));
+  EXPECT_THAT(said("gain", "drive.torque_scale", {0.78, 0.7, 0.86}), HasSubstr("(-22 %, between -30 and -14)"));
   EXPECT_THAT(said("gain", "drive.torque_scale", {1.25, 1.25, 1.25}), HasSubstr("(+25 %)"));
   EXPECT_THAT(said("gain", "sensor.angle_scale", {1.09, 1.09, 1.09}), HasSubstr("(+9 % in its readings)"));
   EXPECT_THAT(said("rate_limit", "command.rate_limit_rad_s", {2.0, 2.0, 2.0}), HasSubstr("(at most 115 degrees/s)"));
@@ -115,6 +115,20 @@ TEST(FirstParagraph, SaysHowMuchInUnitsOfAWorkshop) {
     EXPECT_THAT(said("coulomb", std::string(parameter.name), {0.0, 0.0, 0.0}),
                 testing::Not(testing::ContainsRegex("nan|inf")))
         << parameter.name;
+}
+
+TEST(FirstParagraph, OfANumberThatIsSureOnlyBesideOthersSaysHowMuchItIsAtMost) {
+  Diagnosis joint = diagnosis_of(Verdict::kFound, {});
+  joint.before.actuator.friction.coulomb_Nm = 0.5;
+  const auto said = [&](const std::string& effect, const std::string& parameter, evidence::Interval value) {
+    joint.causes = {cause_of(effect, parameter, value)};
+    return paragraph_of(joint);
+  };
+  EXPECT_THAT(said("eccentricity", "sensor.eccentricity_rad", {0.0925, -0.068, 0.0995}),
+              HasSubstr("(5.3 degrees, at most 5.7)"));
+  EXPECT_THAT(said("gain", "drive.torque_scale", {0.78, 0.7, 1.06}), HasSubstr("(-22 %, at most -30)"));
+  EXPECT_THAT(said("coulomb", "friction.coulomb_Nm", {0.67, 0.4, 0.7}),
+              HasSubstr("(0.67 Nm, at most 0.7; the simulation has 0.5)"));
 }
 
 TEST(FirstParagraph, SaysMillimetresAndNewtonsOfALinearAxis) {

@@ -73,7 +73,8 @@ std::vector<double> moved(const calib::SingleJoint& joint, const Hidden& hidden)
 
 /// The slower four excitations with two gains each, recorded twice, at the step that fits use: nothing but the hidden
 /// torque and noise is missing.
-std::vector<calib::SingleJoint> runs(const Hidden& hidden, double noise_rad = kNoise_rad) {
+std::vector<calib::SingleJoint> runs(const Hidden& hidden, double noise_rad = kNoise_rad,
+                                     const Hidden& hidden_at_high_gain = {}) {
   const bench::Bench bench = test::pd_bench(true);
   std::mt19937 random(3);
   std::normal_distribution<double> noise(0.0, noise_rad);
@@ -86,7 +87,9 @@ std::vector<calib::SingleJoint> runs(const Hidden& hidden, double noise_rad = kN
     run.repeat = i / kConditions;
     run.kp = i % kConditions < 4 ? 15.0 : 25.0;
     run.kd = i % kConditions < 4 ? 0.6 : 1.0;
-    run.recording.q_rad = moved(calib::SingleJoint(bench, run, excitation.step_s()), hidden);
+    const bool other = run.kp > 20.0 && hidden_at_high_gain;
+    run.recording.q_rad =
+        moved(calib::SingleJoint(bench, run, excitation.step_s()), other ? hidden_at_high_gain : hidden);
     for (double& q_rad : run.recording.q_rad) q_rad += noise(random);
     joints.emplace_back(bench, run, excitation.step_s());
   }
@@ -96,12 +99,14 @@ std::vector<calib::SingleJoint> runs(const Hidden& hidden, double noise_rad = kN
 /// What a diagnosis of these runs gives, the repeats being held out.
 class ResidualTorque : public testing::Test {
  protected:
-  diagnosis::Diagnosis diagnosed(const Hidden& hidden) {
-    test::write_bench(folder_, runs(hidden));
+  diagnosis::Diagnosis diagnosed(const Hidden& hidden) { return diagnosed(runs(hidden), "repeat == 0", "repeat == 1"); }
+  diagnosis::Diagnosis diagnosed(const std::vector<calib::SingleJoint>& joints, const std::string& fit,
+                                 const std::string& score) {
+    test::write_bench(folder_, joints);
     diagnosis::DiagnoseOptions options;
     options.model = healthy().actuator;
-    options.fit = "repeat == 0";
-    options.score = "repeat == 1";
+    options.fit = fit;
+    options.score = score;
     return diagnosis::diagnose(bench::read_bench(folder_), options, &runs_);
   }
   /// Mean absolute error of the held-out runs with this actuator [rad].
@@ -165,6 +170,18 @@ TEST_F(ResidualTorque, IsNotLookedForWhereNothingIsUnexplained) {
   EXPECT_FALSE(diagnosed([](double, double) { return 0.0; }).residual_extension);
 }
 
+TEST_F(ResidualTorque, ThatTheRecordingsHeldOutAreNoBetterForIsNotKept) {
+  const std::vector<calib::SingleJoint> joints = runs(latch_Nm, kNoise_rad, [](double, double) { return 0.0; });
+  const diagnosis::Diagnosis found = diagnosed(joints, "kp_Nm_per_rad == 15", "kp_Nm_per_rad == 25");
+  ASSERT_TRUE(found.residual_extension);
+  const Extension& extension = *found.residual_extension;
+  EXPECT_FALSE(extension.kept);
+  EXPECT_EQ(extension.why_not, "the recordings held out are simulated no better with it");
+  EXPECT_GT(extension.gain.deviations, 2.0) << "the fitted recordings want it";
+  EXPECT_EQ(extension.held_out_after.value, extension.held_out_before.value);
+  EXPECT_EQ(found.after.actuator.residual_torque.count, 0);
+}
+
 /// An extension of a joint in memory, whose model is the healthy one.
 Extension extended(const std::vector<calib::SingleJoint>& joints, const Options& options) {
   const bench::Bench bench = test::pd_bench(true);
@@ -194,6 +211,22 @@ TEST(ResidualExtension, IsNoLargerThanItsBound) {
   const effects::BenchScale scale = effects::scale_of(test::pd_bench(true), joints, healthy());
   const Extension extension = extended(joints, options);
   for (const double value_Nm : extension.term.values_Nm) EXPECT_LE(std::abs(value_Nm), 0.01 * scale.torque_peak_Nm);
+}
+
+TEST(RolloutFit, OfAStartThatThrowsTheJointOffItsRecordingIsAsGoodAsOfARightOne) {
+  const std::vector<calib::SingleJoint> joints = runs(latch_Nm);
+  const bench::Bench bench = test::pd_bench(true);
+  const effects::NestedFit fit(joints, 1);
+  const effects::BenchScale scale = effects::scale_of(bench, fit.runs(), healthy());
+  const effects::NestedModel model = fit.fit(healthy(), {effects::unknown("friction.coulomb_Nm", bench, scale)}, 5);
+  const MissingTorque missing = missing_torque(bench, fit, model.model, scale);
+  TorqueFit start = torque_fits(missing, effects::folds(fit), scale.torque_Nm, {}).front();
+  ASSERT_EQ(text(start.candidate.term), "torque over position_rad");
+  const auto squares = [&] { return rollout_fit(fit, model, start, 0.5 * scale.torque_peak_Nm, 8).value().squares; };
+  const double right = squares();
+  EXPECT_LT(right, 0.05 * model.squares) << "without it";
+  start.amplitudes *= -6.0;
+  EXPECT_LT(squares(), 2.0 * right);
 }
 
 /// The healthy joint whose friction grows by 2 Nm while it rests for half a second, under slow strokes from rest.
