@@ -218,7 +218,7 @@ bench::Bench examined(const bench::Bench& bench, const Arguments& arguments, con
   if (found.handling == data_faults::Handling::kLeaveOut && !found.corrected.empty())
     throw std::invalid_argument(fmt::format(
         "{}: {}; mend the files, or fit the corrected data: --data-faults correct (docs/how-to/diagnosis.md)",
-        bench.folder.string(), worth.reservations().front().why));
+        bench.folder.string(), worth.reservations().at(found.corrected.front()).why));
   return data_faults::examined_bench(bench, found);
 }
 

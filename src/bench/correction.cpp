@@ -50,6 +50,18 @@ void shift(Recording& r, const std::vector<Column>& columns, double shift_s) {
   cut(r, first, last);
 }
 
+void leave_out(Recording& r, const std::vector<std::size_t>& samples) {
+  for (const std::size_t k : samples) r.valid.at(k) = false;
+  for (const std::size_t k : samples) {
+    std::size_t before = k, after = k;
+    while (before > 0 && !r.valid[before]) --before;
+    while (after + 1 < r.valid.size() && !r.valid[after]) ++after;
+    if (!r.valid[before] || !r.valid[after]) continue;  // at an end there is nothing on the other side
+    const double share = (r.t_s[k] - r.t_s[before]) / (r.t_s[after] - r.t_s[before]);
+    r.q_rad[k] = r.q_rad[before] + share * (r.q_rad[after] - r.q_rad[before]);
+  }
+}
+
 }  // namespace
 
 std::vector<double> shifted(const std::vector<double>& t_s, const std::vector<double>& values, double shift_s) {
@@ -130,6 +142,7 @@ void correct(BenchRun& run, const Correction& correction) {
   run.kd *= correction.kd_factor;
   run.load.inertia_kg_m2 *= correction.load_factor;
   run.load.gravity_Nm *= correction.load_factor;
+  leave_out(run.recording, correction.unknown_readings);
   if (!correction.conditions) return;
   const RowConditions& c = *correction.conditions;
   run.trajectory = c.trajectory;

@@ -44,6 +44,9 @@ struct Correction {
   double kp_factor = 1.0, kd_factor = 1.0;    ///< right gain over the row's
   double load_factor = 1.0;                   ///< right inertia and gravity over those of bench.yaml
   std::optional<RowConditions> conditions{};  ///< what the row should have said
+  /// Samples whose reading isn't the joint's: they become invalid. The readings beside them are joined by lines, for
+  /// whoever needs a number there.
+  std::vector<std::size_t> unknown_readings{};
 };
 
 /// (run) => (run with the correction, if it is one of the named).

@@ -12,7 +12,8 @@ struct Recording {
   std::vector<double> t_s, q_cmd_rad, q_rad;  ///< never empty
   std::vector<double> dq_cmd_rad_s, dq_rad_s, tau_ff_Nm, torque_Nm, bus_V, drive_V, temp_C;
   std::vector<bool> enabled;
-  /// One flag per sample; false for a dropout of the sensor: a single reading far from both of its neighbours.
+  /// One flag per sample; false for a dropout of the sensor, a single reading far from both of its neighbours, and for
+  /// a reading that a correction calls unknown.
   std::vector<bool> valid;
   std::size_t dropouts() const;
 };

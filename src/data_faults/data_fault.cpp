@@ -17,9 +17,11 @@ const char* name(Kind kind) {
     case Kind::kSwappedRuns:
       return "swapped_runs";
     case Kind::kRow:
+      return "row";
+    case Kind::kFrozenReadings:
       break;
   }
-  return "row";
+  return "frozen_readings";
 }
 
 }  // namespace pmg::data_faults

@@ -9,13 +9,14 @@
 namespace pmg::data_faults {
 
 enum class Kind {
-  kUnit,         ///< a column in another unit than its name says
-  kSign,         ///< a column with its sign turned
-  kTimeShift,    ///< a column earlier or later than the others
-  kMass,         ///< a load of bench.yaml that is heavier or lighter than written
-  kGainFactor,   ///< a gain of runs.csv that acts by a factor of its number
-  kSwappedRuns,  ///< two rows of runs.csv, or the readings of two runs, stand for each other
-  kRow,          ///< a row of runs.csv with the gains or the load of other rows
+  kUnit,            ///< a column in another unit than its name says
+  kSign,            ///< a column with its sign turned
+  kTimeShift,       ///< a column earlier or later than the others
+  kMass,            ///< a load of bench.yaml that is heavier or lighter than written
+  kGainFactor,      ///< a gain of runs.csv that acts by a factor of its number
+  kSwappedRuns,     ///< two rows of runs.csv, or the readings of two runs, stand for each other
+  kRow,             ///< a row of runs.csv with the gains or the load of other rows
+  kFrozenReadings,  ///< readings that stand still while the joint moves
 };
 
 const char* name(Kind kind);

@@ -46,6 +46,7 @@ void add_to(Json& whole, const Examination& examination) {
   whole["data_faults_handled"] = {{"by", name(examination.handling)},
                                   {"corrected", !examination.corrected.empty()},
                                   {"left_out", examination.left_out},
+                                  {"readings_left_out", !examination.readings_left_out.empty()},
                                   {"verdict_of_faulty_data", examination.uncorrected()}};
   whole["data_fault_options"] = evidence::thresholds_json(examination.options);
 }
@@ -59,6 +60,9 @@ std::string handling_text(const Examination& examination) {
     text = fmt::format("The verdict leaves out {} run{}: {}.", examination.left_out.size(),
                        examination.left_out.size() > 1 ? "s" : "", fmt::join(examination.left_out, ", "));
   }
+  if (!examination.readings_left_out.empty())
+    text += fmt::format("{}The verdict leaves out the readings that stand still while the joint moves.",
+                        text.empty() ? "" : " ");
   if (!examination.corrected.empty()) {
     text += fmt::format("{}The verdict is of the corrected data. The files are as they were: mend them.",
                         text.empty() ? "" : " ");

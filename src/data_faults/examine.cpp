@@ -6,6 +6,7 @@
 
 #include "data_faults/column_checks.hpp"
 #include "data_faults/commanded_torque_check.hpp"
+#include "data_faults/frozen_readings_check.hpp"
 #include "data_faults/position_checks.hpp"
 #include "data_faults/repeat_checks.hpp"
 #include "data_faults/run_checks.hpp"
@@ -98,8 +99,9 @@ bool Examination::uncorrected() const { return handling == Handling::kKeep && !f
 std::vector<DataFault> find_data_faults(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
                                         const std::optional<model::ActuatorParameters>& model,
                                         const DataFaultOptions& options, unsigned threads) {
-  std::vector<DataFault> found;
-  Examined examined(bench, runs, model, options, threads);
+  // First: to all other checks a reading that stands still is late.
+  std::vector<DataFault> found = frozen_readings(runs, bench.rig == bench::Rig::kLinear, options);
+  Examined examined(bench, corrected(runs, found), model, options, threads);
   take(position_faults(examined), examined, found);
   take(supply_faults(bench, examined.runs(), options), examined, found);
   // Before a model is fitted, only what all runs show.
@@ -171,6 +173,10 @@ Examination examination(std::vector<DataFault> faults, const std::vector<bench::
   Examination found{.faults = std::move(faults), .handling = handling};
   if (handling == Handling::kKeep) return found;
   for (std::size_t f = 0; f < found.faults.size(); ++f) {
+    if (found.faults[f].kind == Kind::kFrozenReadings) {  // the other readings of its runs are right
+      found.readings_left_out.push_back(f);
+      continue;
+    }
     std::vector<std::string> left_out = found.left_out;
     for (const std::string& file : found.faults[f].files) {
       if (std::find(left_out.begin(), left_out.end(), file) == left_out.end()) left_out.push_back(file);
@@ -192,9 +198,11 @@ Examination examination(std::vector<DataFault> faults, const std::vector<bench::
 
 bench::Bench examined_bench(const bench::Bench& bench, const Examination& examination) {
   std::vector<bench::Correction> corrections;
-  for (const std::size_t f : examination.corrected) {
-    const std::vector<bench::Correction>& fixes = examination.faults[f].fixes;
-    corrections.insert(corrections.end(), fixes.begin(), fixes.end());
+  for (const auto* faults : {&examination.readings_left_out, &examination.corrected}) {
+    for (const std::size_t f : *faults) {
+      const std::vector<bench::Correction>& fixes = examination.faults[f].fixes;
+      corrections.insert(corrections.end(), fixes.begin(), fixes.end());
+    }
   }
   bench::Bench found = bench::corrected(bench, corrections, examination.left_out);
   found.other_units = examination.other_units;

@@ -36,8 +36,9 @@ struct ExamineOptions {
 struct Examination {
   std::vector<DataFault> faults;
   Handling handling = Handling::kLeaveOut;
-  std::vector<std::string> left_out{};   ///< files of runs
-  std::vector<std::size_t> corrected{};  ///< indices of the faults whose corrections the diagnosis goes on with
+  std::vector<std::string> left_out{};           ///< files of runs
+  std::vector<std::size_t> readings_left_out{};  ///< indices of the faults whose readings the diagnosis goes on without
+  std::vector<std::size_t> corrected{};          ///< and of those whose corrections it goes on with
   bool other_units = false;    ///< positions of these runs are too large for radians or metres; a fault says why
   DataFaultOptions options{};  ///< thresholds in force
   bool uncorrected() const;    ///< faults are left in the data that the diagnosis goes on with
@@ -71,7 +72,7 @@ Examination examine_again(const bench::Bench& bench, const std::vector<std::stri
 
 /// (faults, runs, handling, groups of files) => (what the diagnosis goes on with). A fault's runs are left out as long
 /// as half of all runs stay, and one of each group: the runs that are fitted, and those that are scored. Faults whose
-/// runs can't be left out are corrected.
+/// runs can't be left out are corrected. Of a fault of single readings only these are left out, not its runs.
 Examination examination(std::vector<DataFault> faults, const std::vector<bench::BenchRun>& runs, Handling handling,
                         const std::vector<std::vector<std::string>>& groups = {});
 

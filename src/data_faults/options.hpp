@@ -46,6 +46,15 @@ struct DataFaultOptions {
       kAssumed};
   work::Threshold command_difference{
       0.02, "", "two recordings have the same commands if these differ by at most this share of their size", kAssumed};
+  // Readings that stand still.
+  work::Threshold frozen_quanta{5.0, "",
+                                "readings that repeat are frozen if they jump by so many of the column's smallest "
+                                "steps afterwards: a coarse sensor repeats by itself",
+                                kLiterature};
+  work::Threshold frozen_steps{2.0, "", "and by so many times each step of one sample beside it", kLiterature};
+  work::Threshold frozen_tolerance{2.0, "", "and by at most so many times what the speed before or after explains",
+                                   kLiterature};
+  work::CountThreshold frozen_stretches{3, "", "and if one run shows it so many times", kLiterature};
   // What the model says of a run.
   work::Threshold clear_gain{
       2.0, "", "a sign, a unit or a row of one run is wrong if the correction divides the model's error by so much",
@@ -104,11 +113,12 @@ struct DataFaultOptions {
 
   PMG_THRESHOLDS(sure_correlation, follows_correlation, same_kind_share, unit_tolerance, supply_tolerance,
                  strange_factor, slope_tolerance, sensor_lag_s, shift_samples, least_shift_s, shift_rest,
-                 longest_shift_s, law_factor, command_difference, clear_gain, overwhelming_gain, usual_error,
-                 usual_deviations, largest_usual_error, column_gain, model_shift_samples, shift_gain, lone_shift_gain,
-                 longest_delay_s, row_gain, pair_gain, least_mass_factor, mass_gain, least_gain_factor, gain_gain,
-                 damping_gain, least_common_gain, better_than_common, factor_deviations, least_exact_factor,
-                 exact_floors, exact_evidence, others_within, feed_forward_gain, fitted_runs, most_faults)
+                 longest_shift_s, law_factor, command_difference, frozen_quanta, frozen_steps, frozen_tolerance,
+                 frozen_stretches, clear_gain, overwhelming_gain, usual_error, usual_deviations, largest_usual_error,
+                 column_gain, model_shift_samples, shift_gain, lone_shift_gain, longest_delay_s, row_gain, pair_gain,
+                 least_mass_factor, mass_gain, least_gain_factor, gain_gain, damping_gain, least_common_gain,
+                 better_than_common, factor_deviations, least_exact_factor, exact_floors, exact_evidence, others_within,
+                 feed_forward_gain, fitted_runs, most_faults)
 };
 
 }  // namespace pmg::data_faults

@@ -62,6 +62,19 @@ TEST(Correction, GivesARowOtherGainsAndLoad) {
   EXPECT_DOUBLE_EQ(run.load.inertia_kg_m2, 0.08);
 }
 
+TEST(Correction, LeavesOutReadingsAndJoinsThoseBeside) {
+  BenchRun run = run_with_ramp();
+  for (std::size_t k = 48; k < 53; ++k) run.recording.q_rad[k] = 9.0;  // 50 is a dropout
+  correct(run, {.unknown_readings = {48, 49, 51, 52}});
+  for (std::size_t k = 47; k < 54; ++k) {
+    EXPECT_EQ(run.recording.valid[k], k < 48 || k > 52) << k;
+    if (k == 50) continue;
+    EXPECT_NEAR(run.recording.q_rad[k], 0.1 * static_cast<double>(k), 1e-12) << k;
+  }
+  correct(run, {.unknown_readings = {98, 99}});
+  EXPECT_FALSE(run.recording.valid[99]) << "there is nothing on the other side";
+}
+
 TEST(Correction, ABenchReadsItsRunsCorrectedAndWithoutThoseLeftOut) {
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("pmg_correction_" + std::to_string(getpid()));

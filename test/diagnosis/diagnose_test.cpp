@@ -9,6 +9,7 @@
 #include <random>
 
 #include "calib/synthetic_bench.hpp"
+#include "data_faults/frozen.hpp"
 #include "diagnosis/diagnosis_json.hpp"
 #include "diagnosis_page/diagnosis_page.hpp"
 
@@ -91,6 +92,32 @@ TEST_F(Diagnose, SaysInJsonWhatTheFormatAsksFor) {
                           "next_excitation", "options"}) {
     EXPECT_TRUE(json.contains(key)) << key;
   }
+}
+
+TEST_F(Diagnose, GoesOnWithoutReadingsThatFroze) {
+  calib::JointModel truth;
+  truth.actuator = known();
+  std::vector<calib::SingleJoint> joints;
+  for (const calib::SingleJoint& joint : test::record(test::pd_bench(true), truth, 4, 2e-4)) {
+    bench::BenchRun run = joint.run();
+    test::freeze(run, 0.35, 0.2);
+    joints.emplace_back(test::pd_bench(true), run, joint.step_s());
+  }
+  test::write_bench(folder_, joints);
+  DiagnoseOptions options;
+  options.model = known();
+  for (const auto handling : {data_faults::Handling::kLeaveOut, data_faults::Handling::kCorrect}) {
+    options.data.handling = handling;
+    const Diagnosis found = diagnose(bench::read_bench(folder_), options);
+    ASSERT_EQ(found.data.faults.size(), 1U);
+    EXPECT_EQ(found.data.faults.front().kind, data_faults::Kind::kFrozenReadings);
+    EXPECT_EQ(found.verdict, evidence::Verdict::kNone);
+    EXPECT_TRUE(found.causes.empty());
+  }
+  options.data.handling = data_faults::Handling::kKeep;
+  const Diagnosis kept = diagnose(bench::read_bench(folder_), options);
+  EXPECT_EQ(kept.data.faults.size(), 1U);
+  EXPECT_NE(kept.verdict, evidence::Verdict::kNone) << "what is left in the data shows";
 }
 
 TEST_F(Diagnose, DecidesByItsOptions) {

@@ -76,6 +76,15 @@ RigNeeds needs_of_fault(std::size_t kind) {
   }
 }
 
+DataFault frozen_readings(const Rig& rig) {
+  DataFault fault;
+  fault.kind = kFrozenReadings;
+  fault.column = "q_rad";
+  fault.runs = all_runs(rig);
+  fault.text = "the reading before stands there while somebody else has the bus";
+  return fault;
+}
+
 DataFault draw_fault(Draw& draw, std::size_t kind, Rig& rig) {
   DataFault fault;
   fault.kind = kFaultKinds[kind];
@@ -149,6 +158,7 @@ Rig with_fault(const DataFault& fault, Rig rig) {
 }
 
 void spoil(const DataFault& fault, std::vector<FiledRun>& files) {
+  if (fault.kind == kFrozenReadings) return;
   if (fault.kind == kFaultKinds[kSwapped]) {
     std::swap(files[fault.runs[0]].recording, files[fault.runs[1]].recording);
     return;

@@ -13,6 +13,9 @@ namespace pmg::literature {
 inline constexpr const char* kFaultKinds[] = {"units_of_feed_forward", "degrees",      "flipped_sign", "wrong_mass",
                                               "gain_factor",           "swapped_runs", "time_shift"};
 
+/// Takes its turns among what is off the catalogue. The recorder loses the readings: it is no fault of files.
+inline constexpr const char* kFrozenReadings = "frozen_readings";
+
 struct DataFault {
   std::string kind;
   std::string column;                  ///< of runs/*.csv or runs.csv; empty where none is meant
@@ -34,13 +37,16 @@ struct FiledRun {
 /// What a fault of that kind needs of its rig.
 RigNeeds needs_of_fault(std::size_t kind);
 
+/// Readings of all runs that are lost while somebody else has the bus.
+DataFault frozen_readings(const Rig& rig);
+
 /// A fault of that kind. units_of_feed_forward makes the rig feed forward.
 DataFault draw_fault(Draw& draw, std::size_t kind, Rig& rig);
 
 /// The rig whose load isn't what was weighed, for wrong_mass; of other kinds the rig itself.
 Rig with_fault(const DataFault& fault, Rig rig);
 
-/// Puts the fault into the files, which are those of all runs.
+/// Puts the fault into the files, which are those of all runs. Readings that froze are so already.
 void spoil(const DataFault& fault, std::vector<FiledRun>& files);
 
 }  // namespace pmg::literature

@@ -139,7 +139,7 @@ std::vector<Form> strange_forms() {
          m.command.loss = draw.uniform(0.2, 0.5);
          return {};
        }},
-      {"lost_readings", "while somebody else has the bus", "Davis, Burns, Bril, Lukkien 2007", kAny,
+      {kFrozenReadings, "while somebody else has the bus", "Davis, Burns, Bril, Lukkien 2007", kAny,
        [](Draw& draw, const Rig&, Machine& m) -> Planted {
          m.sensor.loss_period_s = draw.uniform(0.25, 0.6);
          m.sensor.loss = draw.uniform(0.1, 0.35);

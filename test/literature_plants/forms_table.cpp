@@ -10,6 +10,9 @@ namespace pmg::literature {
 
 std::string forms_table() {
   std::vector<Form> all = catalogue_forms();
+  const auto of_what = [](const Form& form) {
+    return is_data_fault(form) ? "data fault: " : off_catalogue(form) ? "off the catalogue: " : "";
+  };
   for (const Form& form : strange_forms()) {
     const auto same = std::find_if(all.rbegin(), all.rend(),
                                    [&](const Form& other) { return other.effect == std::string(form.effect); });
@@ -24,7 +27,7 @@ std::string forms_table() {
     }
     if (!effect.empty()) text += " |\n";
     effect = form.effect;
-    text += fmt::format("| {}`{}` | {}", off_catalogue(form) ? "off the catalogue: " : "", effect, one);
+    text += fmt::format("| {}`{}` | {}", of_what(form), effect, one);
   }
   return text + " |\n";
 }

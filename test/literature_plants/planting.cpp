@@ -128,6 +128,8 @@ bool off_catalogue(const Form& form) {
   return std::ranges::none_of(all, [&](const Form& known) { return known.effect == std::string(form.effect); });
 }
 
+bool is_data_fault(const Form& form) { return form.effect == std::string(kFrozenReadings); }
+
 /// Dry friction c (1 + a) one way and c (1 - a) the other is friction c and a constant torque -a c, unless c varies.
 /// Torque that fades is a drift, whichever clock it follows. A constant torque that ends with the drive is one while it
 /// is on.
@@ -160,8 +162,15 @@ LiteraturePlant plant_of(std::uint64_t seed) {
     const bool faulty = turn.stratum == Stratum::kFault;
     const std::size_t kind = faulty ? in_turn(std::size(kFaultKinds), turn.count, seed, 4) : 0;
     LiteraturePlant plant = plant_forms(forms, seed, attempt, draw, faulty ? needs_of_fault(kind) : RigNeeds{});
-    const bool known = turn.stratum == Stratum::kStrange && !off_catalogue(forms.front());
-    plant.stratum = known ? Stratum::kSingle : turn.stratum;
+    plant.sound_machine = plant.machine;
+    plant.stratum = turn.stratum;
+    if (turn.stratum == Stratum::kStrange && !off_catalogue(forms.front())) plant.stratum = Stratum::kSingle;
+    if (turn.stratum == Stratum::kStrange && is_data_fault(forms.front())) {
+      plant.stratum = Stratum::kFault;
+      plant.sound_machine = plant.rig.healthy;
+      plant.effects.clear();
+      plant.faults.push_back(frozen_readings(plant.rig));
+    }
     if (faulty) plant.faults.push_back(draw_fault(draw, kind, plant.rig));
     plant.sound_rig = plant.rig;
     if (faulty) plant.rig = with_fault(plant.faults.front(), plant.sound_rig);
@@ -176,6 +185,7 @@ LiteraturePlant plant_with(const Form& form, std::uint64_t seed) {
     LiteraturePlant plant = plant_forms({form}, seed, attempt, draw);
     plant.stratum = Stratum::kSingle;
     plant.sound_rig = plant.rig;
+    plant.sound_machine = plant.machine;
     if (follows_its_commands(plant.machine, plant.rig, seed)) return plant;
   }
   throw std::runtime_error(std::string("no bench with ") + form.effect + ", " + form.form + " follows its commands");

@@ -39,10 +39,11 @@ struct Form {
 
 /// All forms of the catalogue's effects; those of one effect stand together.
 std::vector<Form> catalogue_forms();
-/// What takes turns in the stratum "strange": what no catalogue knows, and a belt, which came to the catalogue after
-/// the turns were set. It is a single effect.
+/// What takes turns in the stratum "strange": what no catalogue knows, and what came to the catalogue or to the data
+/// faults after the turns were set: a belt, which is a single effect, and readings that freeze, which are a data fault.
 std::vector<Form> strange_forms();
 bool off_catalogue(const Form& form);
+bool is_data_fault(const Form& form);
 
 /// Names by which the planted form may be called as well, because the torque is the same on this rig.
 std::vector<std::string> same_here(const Form& form, const Machine& machine);
@@ -57,8 +58,9 @@ struct LiteraturePlant {
   std::uint64_t seed = 0;
   Stratum stratum = Stratum::kClean;
   Rig rig;
-  Rig sound_rig;    ///< without what a data fault changes of it
-  Machine machine;  ///< rig.healthy with the effects in it
+  Rig sound_rig;          ///< without what a data fault changes of it
+  Machine machine;        ///< rig.healthy with the effects in it
+  Machine sound_machine;  ///< without what a data fault changes of it
   std::vector<PlantedEffect> effects;
   std::vector<DataFault> faults;
 };

@@ -196,6 +196,26 @@ TEST(LiteraturePlants, EveryKindOfFaultTakesItsTurn) {
   EXPECT_EQ(kinds, std::set<std::string>(std::begin(kFaultKinds), std::end(kFaultKinds)));
 }
 
+TEST(LiteraturePlants, ReadingsThatFreezeTakeTheirTurnOffTheCatalogueAndAreADataFault) {
+  constexpr std::uint64_t kSeed = 270;
+  ASSERT_EQ(stratum_of(kSeed), Stratum::kStrange);
+  const LiteraturePlant plant = plant_of(kSeed);
+  EXPECT_EQ(plant.stratum, Stratum::kFault);
+  EXPECT_TRUE(plant.effects.empty());
+  ASSERT_EQ(plant.faults.size(), 1U);
+  EXPECT_EQ(plant.faults.front().kind, kFrozenReadings);
+  EXPECT_EQ(plant.faults.front().runs.size(), plant.rig.runs.size());
+  const Recording sound = record(plant.sound_machine, plant.rig, kSeed, 0),
+                  lost = record(plant.machine, plant.rig, kSeed, 0);
+  std::size_t repeats = 0, later = 0;
+  for (std::size_t k = 1; k < lost.q_rad.size(); ++k) {
+    if (lost.q_rad[k] == sound.q_rad[k]) continue;
+    ++(lost.q_rad[k] == lost.q_rad[k - 1] ? repeats : later);
+  }
+  EXPECT_GT(repeats, lost.q_rad.size() / 10);
+  EXPECT_EQ(later, 0U) << "what isn't lost is the joint's";
+}
+
 std::vector<FiledRun> files_of(const Rig& rig, std::uint64_t seed) {
   std::vector<FiledRun> files;
   for (std::size_t i = 0; i < rig.runs.size(); ++i) {

@@ -160,7 +160,7 @@ PreparedPlant prepare(std::uint64_t seed, const std::filesystem::path& folder) {
   nlohmann::json effects = nlohmann::json::array(), faults = nlohmann::json::array();
   for (const PlantedEffect& effect : plant.effects) effects.push_back(effect_json(effect, prepared, floor_rad));
   for (const DataFault& fault : plant.faults) {
-    write_bench(sound, plant, plant.machine, 0, false);
+    write_bench(sound, plant, plant.sound_machine, 0, false);
     faults.push_back(fault_json(fault, fault_moves_floors(fault, prepared.base, prepared.bench, sound, floor_rad)));
   }
   prepared.truth = {{"seed", seed},
