@@ -184,7 +184,8 @@ class JointDiagnosisRun {
     for (Extension chosen = search.choose();;) {
       const Settled settled = search.settled(std::move(chosen));
       chosen = settled.chosen;
-      effects::NestedModel fitted = settled.with_priors.fitted;
+      report(share_, "fitting from other starts");
+      effects::NestedModel fitted = search.from_other_starts(settled.with_priors);
       if (all.runs().size() > search.runs()) {
         report(share_, "fitting all runs");
         fitted = all.fit(fitted.model, fitted.unknowns, 8, nullptr, fitted.prior_weight);

@@ -8,6 +8,7 @@
 
 #include "calib/unknown.hpp"
 #include "effects/catalogue.hpp"
+#include "effects/other_starts.hpp"
 
 namespace pmg::diagnosis {
 
@@ -133,6 +134,21 @@ Extension EffectSearch::refit_with_priors(const Extension& extension) const {
   if (best.fitted.blocks.empty()) fit_.linearise(best.fitted);
   best.held_out = fit_.held_out_squares(best.fitted, compare_.folds());
   return best;
+}
+
+std::vector<std::string> EffectSearch::fitted_parameters(const Extension& extension) const {
+  std::vector<std::string> found;
+  for (const std::string& name : extension.effects) {
+    if (measured(name) != nullptr) continue;
+    const effects::Form& form = effects::form_of(name, extension.forms);
+    found.insert(found.end(), form.parameters.begin(), form.parameters.end());
+  }
+  return found;
+}
+
+effects::NestedModel EffectSearch::from_other_starts(const Extension& with_priors) const {
+  return effects::from_other_starts(fit_, with_priors.fitted, fitted_parameters(with_priors),
+                                    static_cast<int>(options_.many_iterations));
 }
 
 Trial EffectSearch::trial(const Extension& without, const Extension& with, const std::string& effect) const {

@@ -79,6 +79,12 @@ class EffectSearch {
   /// and the base model as given. Costs three fits.
   Extension refit_with_priors(const Extension& extension) const;
 
+  /// The parameters of an extension's effects that are fitted and not read off.
+  std::vector<std::string> fitted_parameters(const Extension& extension) const;
+
+  /// (extension with priors) => (its fit, from other values of its effects' parameters where that ends lower).
+  effects::NestedModel from_other_starts(const Extension& with_priors) const;
+
   /// (chosen extension) => (the same without the effects that don't stand up to a last look, chosen and with priors).
   /// In turn the weakest effect leaves that does not predict runs left out better, or some kind of them worse, or whose
   /// numbers are unsure in the fit with priors. left_out() says why. Costs a fit with priors for each effect that

@@ -40,9 +40,11 @@ class Explaining {
         chosen_(chosen),
         from_(from),
         noise_squares_(std::pow(from.noise.rms_rad, 2)),
-        intervals_(
+        intervals_(effects::reaching(
+            from.searched, from.fitted,
             effects::told(parameter_intervals(from.fitted, folds(from.all), noise_squares_, from.options.intervals),
-                          from.fitted, from.options.intervals)) {}
+                          from.fitted, from.options.intervals),
+            search.fitted_parameters(chosen), from.options.intervals)) {}
 
   Explanation run() {
     std::vector<std::pair<double, Cause>> causes;
@@ -145,7 +147,7 @@ class Explaining {
     }
     const double value = calib::value(from_.fitted.model, parameter);
     if (effects::is_period(parameter)) {
-      const auto [low_s, high_s] = effects::period_range(from_.searched, from_.fitted.model, parameter, noise_squares_,
+      const auto [low_s, high_s] = effects::period_range(from_.searched, from_.fitted, parameter, noise_squares_,
                                                          from_.options.apart_deviations);
       return {parameter, {value, low_s, high_s}, "s"};
     }

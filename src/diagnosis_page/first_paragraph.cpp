@@ -173,7 +173,9 @@ std::string what_next(const Diagnosis& diagnosis) {
   const bool more = diagnosis.next_excitation && !diagnosis.next_excitation->runs.empty();
   if (diagnosis.verdict == evidence::Verdict::kAmbiguous && more)
     return fmt::format("To settle it, {}.", record_next(*diagnosis.next_excitation));
-  if (diagnosis.verdict == evidence::Verdict::kNone) return "Next: at the joint there is nothing to do.";
+  if (diagnosis.verdict == evidence::Verdict::kNone)
+    return fmt::format("Next: at the joint there is nothing{} to do.",
+                       diagnosis.data.readings_left_out.empty() ? "" : " else");
   if (!diagnosis.causes.empty()) {
     std::string text = fmt::format("Next: {}", effects::workshop_words(diagnosis.causes.front().effect).check);
     if (diagnosis.causes.size() > 1) text += " \"What to check\" has the rest.";
@@ -186,6 +188,20 @@ std::string what_next(const Diagnosis& diagnosis) {
            "runs that are named below, and record them again.";
   return "Next: look at the pictures of the recordings that fit worst, and check what the list doesn't know: loose "
          "screws, a table that shakes, a cable that pulls, something that rubs.";
+}
+
+/// What was wrong with the recordings, where the rest was computed all the same; a space at its end.
+std::string on_the_recordings(const data_faults::Examination& data) {
+  std::string text;
+  if (!data.corrected.empty())
+    text =
+        "The recordings have faults: mend them as it says above. All that follows was computed from corrected "
+        "recordings. ";
+  if (!data.readings_left_out.empty())
+    text +=
+        "The position reading stood still again and again while the joint moved: check what else is on its bus, "
+        "its plugs and its cable. These readings were left out. ";
+  return text;
 }
 
 }  // namespace
@@ -204,13 +220,9 @@ std::string first_paragraph(const bench::Bench& bench, const Diagnosis& diagnosi
     return "The simulation doesn't move as this joint does, not even roughly: the recordings may be of something else. "
            "Next: "
            "look at the pictures, and check which joint was recorded, its commands and its readings.";
-  const char* corrected =
-      diagnosis.data.corrected.empty()
-          ? ""
-          : "The recordings have faults: mend them as it says above. All that follows was computed from corrected "
-            "recordings. ";
-  return fmt::format("{}{}{} {}{} {}", corrected, what_is_wrong(bench, diagnosis), how_sure(diagnosis),
-                     what_it_costs(diagnosis), how_much_better(bench, diagnosis), what_next(diagnosis));
+  return fmt::format("{}{}{} {}{} {}", on_the_recordings(diagnosis.data), what_is_wrong(bench, diagnosis),
+                     how_sure(diagnosis), what_it_costs(diagnosis), how_much_better(bench, diagnosis),
+                     what_next(diagnosis));
 }
 
 void show_what_to_check(pages::Page& page, const Diagnosis& diagnosis) {

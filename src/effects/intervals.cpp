@@ -15,6 +15,8 @@ namespace {
 
 constexpr int kResamples = 1000;
 constexpr double kDamping = 1e-6;  // of a step from a minimum
+constexpr double kNearly = 1.2;
+constexpr double kFurther[] = {4.0 / 3.0, 2.0, 3.0};  // of an interval's half
 
 /// Coordinates that the runs show and that are inside their ranges.
 std::vector<Eigen::Index> seen_inside(const NestedModel& model, const Eigen::MatrixXd& information) {
@@ -78,6 +80,35 @@ SumOfThree sum_of_three(const NestedModel& model, double noise_squares, const In
   }
   return found;
 }
+
+/// What the fit costs with one of its unknowns held: squares and prior, the others fitted beside it.
+class Profile {
+ public:
+  Profile(const NestedFit& fit, const NestedModel& model)
+      : fit_(fit), model_(model), known_(fit.jacobian(model, fit.residuals(model.model))) {}
+
+  double here() const { return beside(model_.model, model_.unknowns, &known_); }
+
+  /// True if it costs less than `most` with this value. Where the known Jacobian doesn't tell, it is made anew.
+  bool below(double most, const calib::Unknown& held, double value) const {
+    calib::JointModel start = model_.model;
+    calib::set(start, held.name, value);
+    calib::Unknowns others = model_.unknowns;
+    std::erase(others, held);
+    const double quick = beside(start, others, &known_);
+    return quick < most || (quick < kNearly * most && beside(start, others, nullptr) < most);
+  }
+
+ private:
+  double beside(const calib::JointModel& start, const calib::Unknowns& unknowns, const RolloutJacobian* known) const {
+    const NestedModel found = fit_.fit(start, unknowns, kIterationsBeside, known, model_.prior_weight);
+    return found.squares + prior(found).squares;
+  }
+
+  const NestedFit& fit_;
+  const NestedModel& model_;
+  RolloutJacobian known_;
+};
 
 }  // namespace
 
@@ -144,6 +175,27 @@ std::vector<evidence::Interval> told(std::vector<evidence::Interval> intervals, 
     const calib::Unknown& u = model.unknowns[i];
     low = std::max(std::min(u.lower, low), value - options.told_width * (value - low));
     high = std::min(std::max(u.upper, high), value + options.told_width * (high - value));
+  }
+  return intervals;
+}
+
+std::vector<evidence::Interval> reaching(const NestedFit& fit, const NestedModel& model,
+                                         std::vector<evidence::Interval> intervals,
+                                         const std::vector<std::string>& parameters, const IntervalOptions& options) {
+  const Profile profile(fit, model);
+  const double most = profile.here() * (1.0 + options.reach_squares / static_cast<double>(model.blocks.size()));
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
+    const calib::Unknown& u = model.unknowns[i];
+    if (std::find(parameters.begin(), parameters.end(), u.name) == parameters.end()) continue;
+    const double value = intervals[i].value;
+    for (double* const edge : {&intervals[i].low, &intervals[i].high}) {
+      const double told = *edge;
+      for (const double times : kFurther) {
+        const double there = std::clamp(value + times * (told - value), u.lower, u.upper);
+        if (there == *edge || !profile.below(most, u, there)) break;
+        *edge = there;
+      }
+    }
   }
   return intervals;
 }

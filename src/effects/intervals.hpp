@@ -1,6 +1,7 @@
 // 95 % intervals of a diagnosis' parameters and errors.
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -29,6 +30,11 @@ struct IntervalOptions {
       "intervals: as they are told, so many times as wide as those by which an effect is taken: 84 % of the known "
       "numbers were in these",
       "334 numbers of hidden plants"};
+  work::Threshold reach_squares{
+      3.84, "",
+      "intervals: as they are told, further while the fit with a parameter there is worse by less than so many blocks' "
+      "squares: a block counts as one observation",
+      "chi squared, 95 %"};
   work::Threshold widest_tolerance{
       0.3, "", "intervals: a wider range, as a share of its upper end, is a search's and no tolerance", kAssumed};
   work::Threshold wider{1.5, "",
@@ -39,8 +45,8 @@ struct IntervalOptions {
   work::CountThreshold widenings{3, "", "intervals: so many times", kCost};
   work::CountThreshold iterations{4, "", "Gauss-Newton iterations each time", kCost};
 
-  PMG_THRESHOLDS(form_of_squares, form_of_value, told_width, widest_tolerance, wider, widest_difference, widenings,
-                 iterations)
+  PMG_THRESHOLDS(form_of_squares, form_of_value, told_width, reach_squares, widest_tolerance, wider, widest_difference,
+                 widenings, iterations)
 };
 
 /// (linearised model, folds, mean square of the noise [rad^2]) => (standard deviations of its coordinates; 0 at the
@@ -69,6 +75,16 @@ std::vector<evidence::Interval> parameter_intervals(const NestedModel& model, co
 /// within the unknown's range).
 std::vector<evidence::Interval> told(std::vector<evidence::Interval> intervals, const NestedModel& model,
                                      const IntervalOptions& options = {});
+
+/// (runs, fitted model, intervals as they are told, parameters) => (the same, of these parameters as far to each side
+/// as the other unknowns make up for it): 4/3, 2 and 3 times as wide, as long as the squares and the prior grow by less
+/// than reach_squares of a block's. Rollouts of a joint that sticks are jagged: between two minima that are as good, a
+/// linearised interval is that of one of them. Costs a Jacobian, and up to a
+/// hundred rollouts for each parameter.
+std::vector<evidence::Interval> reaching(const NestedFit& fit, const NestedModel& model,
+                                         std::vector<evidence::Interval> intervals,
+                                         const std::vector<std::string>& parameters,
+                                         const IntervalOptions& options = {});
 
 /// (linearised model) => (fitted again and linearised with differences as wide as the coordinates' deviations, and at
 /// least 3 % of the value: no interval is narrower). Where a joint sticks, its rollouts jump with a number that changes

@@ -9,6 +9,9 @@
 
 namespace pmg::effects {
 
+/// Of the other unknowns, where one is held at another value.
+inline constexpr int kIterationsBeside = 4;
+
 /// A fitted model. LinearisedFit's coordinates are those of the unknowns, in their order.
 struct NestedModel : fitting::LinearisedFit {
   calib::JointModel model;

@@ -158,17 +158,23 @@ double best_period_s(const NestedFit& fit, const calib::JointModel& model, const
   return best_s;
 }
 
-PeriodRange period_range(const NestedFit& fit, const calib::JointModel& model, const std::string& parameter,
+PeriodRange period_range(const NestedFit& fit, const NestedModel& model, const std::string& parameter,
                          double noise_squares, double deviations) {
-  const double period_s = calib::value(model, parameter);
+  const double period_s = calib::value(model.model, parameter);
   const fitting::BlockComparison compare(fit.blocks(), {}, noise_squares);
-  const Eigen::VectorXd here = fit.blocks().squares(fit.residuals(model));
+  const Eigen::VectorXd here = fit.blocks().squares(fit.residuals(model.model));
+  const auto worse = [&](const calib::JointModel& there) {
+    const fitting::Residuals residuals = fit.residuals(there);
+    return residuals.empty() || compare(fit.blocks().squares(residuals), here).deviations > deviations;
+  };
   const auto edge_s = [&](double side) {
     double tried_s = period_s;
     for (const double share : {0.01, 0.02, 0.04, 0.08, 0.15, 0.25, 0.35, 0.5}) {
       tried_s = period_s * (1.0 + side * share);
-      const fitting::Residuals there = at(fit, model, parameter, tried_s);
-      if (there.empty() || compare(fit.blocks().squares(there), here).deviations > deviations) break;
+      calib::JointModel there = model.model;
+      calib::set(there, parameter, tried_s);
+      if (worse(there) && worse(fit.fit(there, model.unknowns, kIterationsBeside, nullptr, model.prior_weight).model))
+        break;
     }
     return tried_s;
   };

@@ -27,9 +27,10 @@ struct PeriodRange {
   double low_s, high_s;
 };
 
-/// (model with a period) => (the nearest periods to both sides, on a grid of a percent to a half, at which the runs are
-/// explained worse by so many standard deviations over blocks). Costs up to sixteen rollouts of every run.
-PeriodRange period_range(const NestedFit& fit, const calib::JointModel& model, const std::string& parameter,
+/// (fitted model with a period) => (the nearest periods to both sides, on a grid of a percent to a half, at which the
+/// runs are explained worse by so many standard deviations over blocks, also where the other unknowns are fitted beside
+/// them). Costs up to sixteen fits of four iterations.
+PeriodRange period_range(const NestedFit& fit, const NestedModel& model, const std::string& parameter,
                          double noise_squares, double deviations);
 
 }  // namespace pmg::effects

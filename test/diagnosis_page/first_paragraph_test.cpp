@@ -182,6 +182,16 @@ TEST(FirstParagraph, SaysThatTheRecordingsWereCorrected) {
                              HasSubstr("stronger or weaker")));
 }
 
+TEST(FirstParagraph, OfReadingsThatStoodStillSaysWhatToCheck) {
+  Diagnosis joint = diagnosis_of(Verdict::kNone, {});
+  joint.data.faults.push_back(
+      {.kind = data_faults::Kind::kFrozenReadings, .where = "column q_rad of all runs", .correction = ""});
+  joint.data.readings_left_out = {0};
+  EXPECT_THAT(paragraph_of(joint),
+              testing::AllOf(HasSubstr("check what else is on its bus"), HasSubstr("These readings were left out"),
+                             HasSubstr("nothing else to do")));
+}
+
 TEST(FirstParagraph, PointsAtRunsThatContradictEachOther) {
   Diagnosis odd = diagnosis_of(Verdict::kUnexplained, {});
   odd.noise_floor.odd_runs = {{.run = "run3.csv", .why = "differs", .deviation_rad = 0.1, .left_out = true}};

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "calib/step_choice.hpp"
 #include "calib/synthetic_bench.hpp"
@@ -111,6 +114,34 @@ TEST(Intervals, AreToldWiderThanTheyDecideWithinTheirRange) {
   EXPECT_EQ(found.value, value);
   EXPECT_EQ(told({{value, value - 0.1, value}}, fitted, options).front().low, value - 0.1) << "where it was beyond";
   EXPECT_EQ(told({{value, 0.171, value}}, fitted, options).front().low, 0.17);
+}
+
+/// A constant torque and friction that differs by direction are the same torque.
+TEST(Intervals, ReachOnAsFarAsTheOtherNumbersMakeUpForIt) {
+  const bench::Bench bench = test::pd_bench(true);
+  const NestedFit fit(test::record(bench, dry_joint(), 4, 20.0 * kNoise_rad), 1);
+  const BenchScale scale = scale_of(bench, fit.runs(), dry_joint());
+  const auto half_widths = [&](const std::vector<std::string>& names, const std::vector<std::string>& reaching_on) {
+    calib::Unknowns unknowns;
+    for (const std::string& name : names) unknowns.push_back(unknown(name, bench, scale));
+    NestedModel model = fit.fit(dry_joint(), unknowns, 10);
+    fit.linearise(model);
+    std::vector<evidence::Interval> narrow;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const double value = unknowns[i].value(model.coordinates[static_cast<Eigen::Index>(i)]);
+      narrow.push_back({value, value - 0.05, value + 0.05});
+    }
+    const evidence::Interval offset = reaching(fit, model, narrow, reaching_on).front();
+    return std::pair(offset.value - offset.low, offset.high - offset.value);
+  };
+  const auto alone = half_widths({"ripple.offset_Nm"}, {"ripple.offset_Nm"});
+  EXPECT_NEAR(alone.first, 0.05, 1e-9) << "0.05 Nm are far more than noise hides";
+  EXPECT_NEAR(alone.second, 0.05, 1e-9);
+  const auto beside = half_widths({"ripple.offset_Nm", "friction.asymmetry"}, {"ripple.offset_Nm"});
+  EXPECT_NEAR(beside.first, 0.15, 1e-9) << "three times as wide";
+  EXPECT_NEAR(beside.second, 0.15, 1e-9);
+  const auto other = half_widths({"ripple.offset_Nm", "friction.asymmetry"}, {"friction.asymmetry"});
+  EXPECT_NEAR(other.first, 0.05, 1e-9) << "of the parameters that are asked for";
 }
 
 // Euler's steps of 4 ms act like 2 ms less delay; a fit makes up for them.

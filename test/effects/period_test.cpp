@@ -81,6 +81,22 @@ TEST(Period, OfAHoldIsInStepWithItsStart) {
   EXPECT_LT(starts.front().squares, 0.05 * current.squares) << "the nearest periods of the catalogue leave more";
 }
 
+/// A reading that is held for less than a sample is late, as one of a joint whose commands are delayed.
+TEST(Period, ReachesAsFarAsADelayMakesUpForIt) {
+  const bench::Bench bench = test::pd_bench(true);
+  calib::JointModel truth = prompt_joint();
+  truth.actuator.sensor.hold_s = 0.004;
+  truth.actuator.command.delay_s = 0.01;
+  const NestedFit fit(test::record(bench, truth, 6, 3e-3), 1);
+  const BenchScale scale = scale_of(bench, fit.runs(), truth);
+  const auto shortest_s = [&](const calib::Unknowns& unknowns) {
+    return period_range(fit, fit.fit(truth, unknowns, 10), "sensor.hold_s", 9e-6, 2.0).low_s;
+  };
+  const double alone_s = shortest_s({unknown("friction.coulomb_Nm", bench, scale)});
+  EXPECT_LT(shortest_s({unknown("friction.coulomb_Nm", bench, scale), unknown("command.delay_s", bench, scale)}),
+            0.95 * alone_s);
+}
+
 TEST(Period, CountsAsANumberAsOtherParametersDo) {
   Extension hold{{"hold"}, {}, {}, {}, {}}, lag{{"sensor_lag"}, {}, {}, {}, {}};
   const bench::Bench bench = test::pd_bench(true);

@@ -1,0 +1,82 @@
+#include "effects/other_starts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "effects/period.hpp"
+
+namespace pmg::effects {
+
+namespace {
+
+constexpr double kLess = 0.75, kMore = 1.33;  // of a value
+constexpr double kTurned_rad = 0.5;           // of a phase
+constexpr int kRounds = 3;                    // from a parameter's other values
+constexpr double kHopeless = 2.0;             // of the squares and the prior, by the Jacobian that is known
+constexpr double kLower = 0.98;               // of them
+
+double cost(const NestedModel& model) { return model.squares + prior(model).squares; }
+
+/// Other values of a parameter to fit from, within its range; none of one that no fit moves.
+std::vector<double> other_values(const NestedFit& fit, const NestedModel& model, const std::string& parameter) {
+  const double value = calib::value(model.model, parameter);
+  if (is_period(parameter)) {
+    calib::JointModel without = model.model;
+    calib::set(without, parameter, 0.0);
+    std::vector<double> found = promising_periods_s(fit, without, parameter, kLess * value, kMore * value);
+    found.insert(found.begin(), {kLess * value, kMore * value});
+    return found;
+  }
+  const auto unknown = std::ranges::find(model.unknowns, parameter, &calib::Unknown::name);
+  if (unknown == model.unknowns.end()) return {};
+  if (calib::quantity(parameter) == model::Quantity::kPhase) {
+    const double turn_rad = 2.0 * std::numbers::pi;
+    return {std::remainder(value - kTurned_rad, turn_rad), std::remainder(value + kTurned_rad, turn_rad)};
+  }
+  std::vector<double> found;
+  for (const double share : {kLess, kMore}) {
+    const double other = std::clamp(share * value, unknown->lower, unknown->upper);
+    if (other != value) found.push_back(other);
+  }
+  return found;
+}
+
+/// The fit from another value of a parameter; none where the others don't make up for it.
+std::optional<NestedModel> fitted_from(const NestedFit& fit, const NestedModel& model, const RolloutJacobian& known,
+                                       const std::string& parameter, double value, int most_iterations) {
+  calib::JointModel start = model.model;
+  calib::set(start, parameter, value);
+  calib::Unknowns others = model.unknowns;
+  std::erase_if(others, [&](const calib::Unknown& u) { return u.name == parameter; });
+  const NestedModel quick = fit.fit(start, others, kIterationsBeside, &known, model.prior_weight);
+  if (!(cost(quick) < kHopeless * cost(model))) return std::nullopt;
+  start = fit.fit(start, others, kIterationsBeside, nullptr, model.prior_weight).model;
+  if (is_period(parameter)) calib::set(start, parameter, best_period_s(fit, start, parameter));
+  NestedModel found = fit.fit(start, model.unknowns, 0, nullptr, model.prior_weight);
+  if (!(cost(found) < cost(model))) return std::nullopt;
+  return fit.fit(start, model.unknowns, most_iterations, nullptr, model.prior_weight);
+}
+
+}  // namespace
+
+NestedModel from_other_starts(const NestedFit& fit, NestedModel model, const std::vector<std::string>& parameters,
+                              int most_iterations) {
+  const double first = cost(model);
+  const RolloutJacobian known = fit.jacobian(model, fit.residuals(model.model));
+  for (const std::string& parameter : parameters) {
+    for (int round = 0; round < kRounds; ++round) {
+      const double before = cost(model);
+      for (const double value : other_values(fit, model, parameter)) {
+        std::optional<NestedModel> other = fitted_from(fit, model, known, parameter, value, most_iterations);
+        if (other && cost(*other) < kLower * cost(model)) model = *std::move(other);
+      }
+      if (!(cost(model) < before)) break;
+    }
+  }
+  if (cost(model) < first && model.blocks.empty()) fit.linearise(model);
+  return model;
+}
+
+}  // namespace pmg::effects
