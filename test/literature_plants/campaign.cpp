@@ -12,6 +12,7 @@
 #include "bench_files.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/diagnosis_json.hpp"
+#include "dormand_prince.hpp"
 #include "files.hpp"
 #include "files/config_error.hpp"
 #include "prepared_plant.hpp"
@@ -42,12 +43,13 @@ json diagnose_again(const diagnosis::Diagnosis& found, const PreparedPlant& prep
                     const std::filesystem::path& folder) {
   if (found.verdict != evidence::Verdict::kAmbiguous || !found.next_excitation) return nullptr;
   const LiteraturePlant plant = with_asked_runs(prepared.plant, *found.next_excitation);
-  write_bench(folder, plant, plant.machine, 0, true);
   try {
+    write_bench(folder, plant, plant.machine, 0, true);
     return kept(diagnose(folder, prepared.base));
   } catch (const files::ConfigError&) {  // the joint ran away under what was asked for
-    return nullptr;
+  } catch (const DoesNotConverge&) {
   }
+  return nullptr;
 }
 
 /// Drops what a killed campaign left after the last whole line.

@@ -7,8 +7,15 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <stdexcept>
 
 namespace pmg::literature {
+
+/// Steps so small that a millisecond takes more than kMostAttempts of them, or a state that is no number.
+struct DoesNotConverge : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 template <std::size_t N>
 class DormandPrince {
@@ -18,15 +25,21 @@ class DormandPrince {
   explicit DormandPrince(double relative = 1e-8, double absolute = 1e-10) : relative_(relative), absolute_(absolute) {}
 
   /// (slope(state), state, duration, event(state)) => (time that has passed). Goes on until the duration has passed, or
-  /// until event() has fallen from above 0 to 0; then state is the one at that time, to 1e-13 s.
+  /// until event() has fallen from above 0 to 0; then state is the one at that time, to 1e-13 s. Throws
+  /// DoesNotConverge.
   template <typename Slope, typename Event>
   double advance(const Slope& slope, State& state, double duration_s, const Event& event) {
     double passed_s = 0.0;
     State first = slope(state);
     double value = event(state);
+    int attempts = 0;
     while (duration_s - passed_s > 1e-13) {
       double h = std::min(step_s_, duration_s - passed_s);
       const double error = attempt(slope, state, first, h);
+      if ((!std::isfinite(error) && h <= kSmallest_s) || ++attempts > kMostAttempts) {
+        step_s_ = kFirst_s;
+        throw DoesNotConverge("the state is no number, or takes too many steps");
+      }
       const double scale = std::clamp(0.9 * std::pow(std::max(error, 1e-10), -0.2), 0.2, 5.0);
       if (error > 1.0 && h > kSmallest_s) {
         step_s_ = h * scale;
@@ -48,7 +61,8 @@ class DormandPrince {
   }
 
  private:
-  static constexpr double kSmallest_s = 1e-9, kLargest_s = 0.01;
+  static constexpr double kSmallest_s = 1e-9, kFirst_s = 1e-4, kLargest_s = 0.01;
+  static constexpr int kMostAttempts = 20000;
 
   static State sum(const State& at, double h, std::initializer_list<std::pair<double, const State*>> parts) {
     State to = at;
@@ -58,7 +72,7 @@ class DormandPrince {
     return to;
   }
 
-  /// One step into next_; its error over the tolerance.
+  /// One step into next_; its error over the tolerance, infinite where the state is no number.
   template <typename Slope>
   double attempt(const Slope& slope, const State& from, const State& first, double h) {
     auto& [k1, k2, k3, k4, k5, k6, k7] = stages_;
@@ -88,6 +102,7 @@ class DormandPrince {
       const double off = h * (71.0 / 57600.0 * k1[i] - 71.0 / 16695.0 * k3[i] + 71.0 / 1920.0 * k4[i] -
                               17253.0 / 339200.0 * k5[i] + 22.0 / 525.0 * k6[i] - 1.0 / 40.0 * k7[i]);
       const double most = absolute_ + relative_ * std::max(std::abs(from[i]), std::abs(next_[i]));
+      if (!std::isfinite(off)) return std::numeric_limits<double>::infinity();
       error = std::max(error, std::abs(off) / most);
     }
     return error;
@@ -127,7 +142,7 @@ class DormandPrince {
     return high;
   }
 
-  double relative_, absolute_, step_s_ = 1e-4, h_ = 0.0;
+  double relative_, absolute_, step_s_ = kFirst_s, h_ = 0.0;
   State from_{}, next_{};
   std::array<State, 7> stages_{};
 };

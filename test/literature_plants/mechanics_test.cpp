@@ -48,6 +48,19 @@ TEST(DormandPrince, StopsWhereAnEventHappens) {
   EXPECT_NEAR(state[0], 1.0, 1e-8);
 }
 
+TEST(DormandPrince, GivesUpWhereAMillisecondTakesTooManySteps) {
+  DormandPrince<1> solver;
+  const auto never = [](const DormandPrince<1>::State&) { return 1.0; };
+  DormandPrince<1>::State stiff = {1.0}, ends = {1.0};
+  EXPECT_THROW(solver.advance([](const auto& at) { return DormandPrince<1>::State{-1e9 * at[0]}; }, stiff, 1e-3, never),
+               DoesNotConverge);
+  const auto to_the_root = [](const auto& at) { return DormandPrince<1>::State{1.0 + std::sqrt(1.5 - at[0])}; };
+  EXPECT_THROW(solver.advance(to_the_root, ends, 2.0, never), DoesNotConverge) << "no number beyond 1.5";
+  DormandPrince<1>::State usual = {1.0};
+  solver.advance([](const auto& at) { return DormandPrince<1>::State{-at[0]}; }, usual, 1.0, never);
+  EXPECT_NEAR(usual[0], std::exp(-1.0), 1e-6) << "the next call begins anew";
+}
+
 TEST(Mechanics, KeepsItsEnergyWithoutFriction) {
   Mechanics mechanics(pendulum());
   mechanics.reset(1.2);

@@ -164,7 +164,7 @@ Recording record(const Machine& machine, const Rig& rig, std::uint64_t seed, std
   return r;
 }
 
-bool follows_its_commands(const Machine& machine, const Rig& rig, std::uint64_t seed) {
+bool follows_its_commands(const Machine& machine, const Rig& rig, std::uint64_t seed) try {
   for (std::size_t i = 0; i < rig.runs.size(); ++i) {
     if (rig.runs[i].repeat > 0) continue;
     const Recording r = record(machine, rig, seed, i);
@@ -176,6 +176,8 @@ bool follows_its_commands(const Machine& machine, const Rig& rig, std::uint64_t 
     if (missed_rad / static_cast<double>(r.q_rad.size()) > kUsualMiss_rad) return false;
   }
   return true;
+} catch (const DoesNotConverge&) {
+  return false;
 }
 
 double mean_absolute_difference_rad(const Recording& a, const Recording& b) {
