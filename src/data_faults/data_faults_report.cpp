@@ -55,19 +55,15 @@ std::string handling_text(const Examination& examination) {
   if (examination.faults.empty()) return "";
   if (examination.uncorrected())
     return "The verdict is of data with faults, as --data-faults keep asks for: don't trust it. Mend the files.";
-  std::string text;
-  if (!examination.left_out.empty()) {
-    text = fmt::format("The verdict leaves out {} run{}: {}.", examination.left_out.size(),
-                       examination.left_out.size() > 1 ? "s" : "", fmt::join(examination.left_out, ", "));
-  }
+  std::vector<std::string> sentences;
+  if (!examination.left_out.empty())
+    sentences.push_back(fmt::format("The verdict leaves out {} run{}: {}.", examination.left_out.size(),
+                                    examination.left_out.size() > 1 ? "s" : "", fmt::join(examination.left_out, ", ")));
   if (!examination.readings_left_out.empty())
-    text += fmt::format("{}The verdict leaves out the readings that stand still while the joint moves.",
-                        text.empty() ? "" : " ");
-  if (!examination.corrected.empty()) {
-    text += fmt::format("{}The verdict is of the corrected data. The files are as they were: mend them.",
-                        text.empty() ? "" : " ");
-  }
-  return text;
+    sentences.push_back("The verdict leaves out the readings that stand still while the joint moves.");
+  if (!examination.corrected.empty())
+    sentences.push_back("The verdict is of the corrected data. The files are as they were: mend them.");
+  return fmt::format("{}", fmt::join(sentences, " "));
 }
 
 std::string faults_text(const Examination& examination) {

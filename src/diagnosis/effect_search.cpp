@@ -126,9 +126,9 @@ Extension EffectSearch::refit_with_priors(const Extension& extension) const {
   for (const calib::JointModel& start : {given, loose.model}) {
     effects::NestedModel fitted =
         fit_.fit(start, loose.unknowns, static_cast<int>(options_.many_iterations), nullptr, weight);
-    const double squares = fitted.squares + prior(fitted).squares;
-    if (squares >= least) continue;
-    least = squares;
+    const double cost = fitting::cost(fitted);
+    if (cost >= least) continue;
+    least = cost;
     best.fitted = std::move(fitted);
   }
   if (best.fitted.blocks.empty()) fit_.linearise(best.fitted);

@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kResamples = 1000;
 constexpr double kDamping = 1e-6;  // of a step from a minimum
+constexpr int kIterations = 4;     // of all numbers, as many as beside one that is held
 constexpr double kNearly = 1.2;
 constexpr double kFurther[] = {4.0 / 3.0, 2.0, 3.0};  // of an interval's half
 
@@ -80,35 +81,6 @@ SumOfThree sum_of_three(const NestedModel& model, double noise_squares, const In
   }
   return found;
 }
-
-/// What the fit costs with one of its unknowns held: squares and prior, the others fitted beside it.
-class Profile {
- public:
-  Profile(const NestedFit& fit, const NestedModel& model)
-      : fit_(fit), model_(model), known_(fit.jacobian(model, fit.residuals(model.model))) {}
-
-  double here() const { return beside(model_.model, model_.unknowns, &known_); }
-
-  /// True if it costs less than `most` with this value. Where the known Jacobian doesn't tell, it is made anew.
-  bool below(double most, const calib::Unknown& held, double value) const {
-    calib::JointModel start = model_.model;
-    calib::set(start, held.name, value);
-    calib::Unknowns others = model_.unknowns;
-    std::erase(others, held);
-    const double quick = beside(start, others, &known_);
-    return quick < most || (quick < kNearly * most && beside(start, others, nullptr) < most);
-  }
-
- private:
-  double beside(const calib::JointModel& start, const calib::Unknowns& unknowns, const RolloutJacobian* known) const {
-    const NestedModel found = fit_.fit(start, unknowns, kIterationsBeside, known, model_.prior_weight);
-    return found.squares + prior(found).squares;
-  }
-
-  const NestedFit& fit_;
-  const NestedModel& model_;
-  RolloutJacobian known_;
-};
 
 }  // namespace
 
@@ -182,8 +154,15 @@ std::vector<evidence::Interval> told(std::vector<evidence::Interval> intervals, 
 std::vector<evidence::Interval> reaching(const NestedFit& fit, const NestedModel& model,
                                          std::vector<evidence::Interval> intervals,
                                          const std::vector<std::string>& parameters, const IntervalOptions& options) {
-  const Profile profile(fit, model);
-  const double most = profile.here() * (1.0 + options.reach_squares / static_cast<double>(model.blocks.size()));
+  if (parameters.empty()) return intervals;
+  const RolloutJacobian known = fit.jacobian(model, fit.residuals(model.model));
+  const NestedModel here = fit.fit(model.model, model.unknowns, kIterations, &known, model.prior_weight);
+  const double most = cost(here) * (1.0 + options.reach_squares / static_cast<double>(model.blocks.size()));
+  // Where the known Jacobian doesn't tell, it is made anew.
+  const auto below = [&](const std::string& parameter, double value) {
+    const double quick = cost(fit.beside(model, parameter, value, &known));
+    return quick < most || (quick < kNearly * most && cost(fit.beside(model, parameter, value)) < most);
+  };
   for (std::size_t i = 0; i < intervals.size(); ++i) {
     const calib::Unknown& u = model.unknowns[i];
     if (std::find(parameters.begin(), parameters.end(), u.name) == parameters.end()) continue;
@@ -192,7 +171,7 @@ std::vector<evidence::Interval> reaching(const NestedFit& fit, const NestedModel
       const double told = *edge;
       for (const double times : kFurther) {
         const double there = std::clamp(value + times * (told - value), u.lower, u.upper);
-        if (there == *edge || !profile.below(most, u, there)) break;
+        if (there == *edge || !below(u.name, there)) break;
         *edge = there;
       }
     }

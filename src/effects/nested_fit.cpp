@@ -9,6 +9,7 @@ namespace {
 /// A fit ends where an iteration lowers the squares by a smaller share. With 500 blocks, each one observation, such a
 /// step moves a number by about a fifth of its deviation: sqrt(500 kEnough).
 constexpr double kEnough = 1e-4;
+constexpr int kIterationsBeside = 4;
 constexpr int kMostSecants = 3;  // later ones gain little: rollouts with dry friction are jagged
 
 }  // namespace
@@ -55,6 +56,15 @@ NestedModel NestedFit::fit(const calib::JointModel& start, const calib::Unknowns
   found.model = calib::model_at(start, unknowns, best.x);
   if (!best.jacobian_at_x.empty()) found.blocks = blocks_.normal_equations(best.residuals, best.jacobian_at_x);
   return found;
+}
+
+NestedModel NestedFit::beside(const NestedModel& model, const std::string& parameter, double value,
+                              const RolloutJacobian* known) const {
+  calib::JointModel start = model.model;
+  calib::set(start, parameter, value);
+  calib::Unknowns others = model.unknowns;
+  std::erase_if(others, [&](const calib::Unknown& u) { return u.name == parameter; });
+  return fit(start, others, kIterationsBeside, known, model.prior_weight);
 }
 
 fitting::HeldOut NestedFit::held_out_squares(const NestedModel& model, const std::vector<fitting::Fold>& folds) const {

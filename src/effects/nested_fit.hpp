@@ -1,6 +1,7 @@
 // Gauss-Newton fits of nested models to a bench's runs: the joint's model with some parameters free.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "calib/rollout_residuals.hpp"
@@ -8,9 +9,6 @@
 #include "fitting/folds.hpp"
 
 namespace pmg::effects {
-
-/// Of the other unknowns, where one is held at another value.
-inline constexpr int kIterationsBeside = 4;
 
 /// A fitted model. LinearisedFit's coordinates are those of the unknowns, in their order.
 struct NestedModel : fitting::LinearisedFit {
@@ -48,6 +46,9 @@ class NestedFit {
   /// rollout of every run, or, where its Jacobian is made anew, one for each unknown and one to six more.
   NestedModel fit(const calib::JointModel& start, const calib::Unknowns& unknowns, int most_iterations,
                   const RolloutJacobian* known = nullptr, double prior_weight = 0.0) const;
+  /// The other unknowns, fitted beside this value of a parameter, for a few iterations.
+  NestedModel beside(const NestedModel& model, const std::string& parameter, double value,
+                     const RolloutJacobian* known = nullptr) const;
   /// Fills the model's blocks, at the cost of jacobian(). A fit that ended with a Jacobian at its result has them.
   void linearise(NestedModel& model, const RolloutJacobian* known = nullptr) const;
 

@@ -17,8 +17,6 @@ constexpr int kRounds = 3;                    // from a parameter's other values
 constexpr double kHopeless = 2.0;             // of the squares and the prior, by the Jacobian that is known
 constexpr double kLower = 0.98;               // of them
 
-double cost(const NestedModel& model) { return model.squares + prior(model).squares; }
-
 /// Other values of a parameter to fit from, within its range; none of one that no fit moves.
 std::vector<double> other_values(const NestedFit& fit, const NestedModel& model, const std::string& parameter) {
   const double value = calib::value(model.model, parameter);
@@ -46,16 +44,10 @@ std::vector<double> other_values(const NestedFit& fit, const NestedModel& model,
 /// The fit from another value of a parameter; none where the others don't make up for it.
 std::optional<NestedModel> fitted_from(const NestedFit& fit, const NestedModel& model, const RolloutJacobian& known,
                                        const std::string& parameter, double value, int most_iterations) {
-  calib::JointModel start = model.model;
-  calib::set(start, parameter, value);
-  calib::Unknowns others = model.unknowns;
-  std::erase_if(others, [&](const calib::Unknown& u) { return u.name == parameter; });
-  const NestedModel quick = fit.fit(start, others, kIterationsBeside, &known, model.prior_weight);
-  if (!(cost(quick) < kHopeless * cost(model))) return std::nullopt;
-  start = fit.fit(start, others, kIterationsBeside, nullptr, model.prior_weight).model;
+  if (!(cost(fit.beside(model, parameter, value, &known)) < kHopeless * cost(model))) return std::nullopt;
+  calib::JointModel start = fit.beside(model, parameter, value).model;
   if (is_period(parameter)) calib::set(start, parameter, best_period_s(fit, start, parameter));
-  NestedModel found = fit.fit(start, model.unknowns, 0, nullptr, model.prior_weight);
-  if (!(cost(found) < cost(model))) return std::nullopt;
+  if (!(cost(fit.fit(start, model.unknowns, 0, nullptr, model.prior_weight)) < cost(model))) return std::nullopt;
   return fit.fit(start, model.unknowns, most_iterations, nullptr, model.prior_weight);
 }
 
@@ -63,6 +55,7 @@ std::optional<NestedModel> fitted_from(const NestedFit& fit, const NestedModel& 
 
 NestedModel from_other_starts(const NestedFit& fit, NestedModel model, const std::vector<std::string>& parameters,
                               int most_iterations) {
+  if (parameters.empty()) return model;
   const double first = cost(model);
   const RolloutJacobian known = fit.jacobian(model, fit.residuals(model.model));
   for (const std::string& parameter : parameters) {

@@ -163,17 +163,15 @@ PeriodRange period_range(const NestedFit& fit, const NestedModel& model, const s
   const double period_s = calib::value(model.model, parameter);
   const fitting::BlockComparison compare(fit.blocks(), {}, noise_squares);
   const Eigen::VectorXd here = fit.blocks().squares(fit.residuals(model.model));
-  const auto worse = [&](const calib::JointModel& there) {
-    const fitting::Residuals residuals = fit.residuals(there);
-    return residuals.empty() || compare(fit.blocks().squares(residuals), here).deviations > deviations;
+  const auto worse = [&](const fitting::Residuals& there) {
+    return there.empty() || compare(fit.blocks().squares(there), here).deviations > deviations;
   };
   const auto edge_s = [&](double side) {
     double tried_s = period_s;
     for (const double share : {0.01, 0.02, 0.04, 0.08, 0.15, 0.25, 0.35, 0.5}) {
       tried_s = period_s * (1.0 + side * share);
-      calib::JointModel there = model.model;
-      calib::set(there, parameter, tried_s);
-      if (worse(there) && worse(fit.fit(there, model.unknowns, kIterationsBeside, nullptr, model.prior_weight).model))
+      if (worse(at(fit, model.model, parameter, tried_s)) &&
+          worse(fit.residuals(fit.beside(model, parameter, tried_s).model)))
         break;
     }
     return tried_s;

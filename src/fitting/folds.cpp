@@ -39,6 +39,8 @@ double deviations(const Eigen::VectorXd& values) {
 
 NormalEquations prior(const LinearisedFit& fit) { return prior(fit.ranges, fit.coordinates, fit.prior_weight); }
 
+double cost(const LinearisedFit& fit) { return fit.squares + prior(fit).squares; }
+
 std::vector<Eigen::VectorXd> steps_without(const LinearisedFit& fit, const std::vector<Fold>& folds) {
   if (fit.coordinates.size() == 0) return std::vector<Eigen::VectorXd>(folds.size());
   NormalEquations all = prior(fit);

@@ -18,6 +18,8 @@ struct LinearisedFit {
   double prior_weight = 0.0;              ///< as Problem::prior_weight
 };
 NormalEquations prior(const LinearisedFit& fit);
+/// What the fit minimises: its squares and its prior's [rad^2].
+double cost(const LinearisedFit& fit);
 
 /// Blocks that are left out together.
 struct Fold {

@@ -13,13 +13,7 @@
 
 namespace pmg::assembly {
 
-inline calib::JointModel healthy() {
-  calib::JointModel model;
-  model.actuator.transmission.armature_kg_m2 = 0.01;
-  model.actuator.friction.viscous_Nm_s_per_rad = 0.1;
-  model.actuator.friction.coulomb_Nm = 0.3;
-  return model;
-}
+inline calib::JointModel healthy() { return test::plain_joint(0.3); }
 
 /// One run: the joint as it was assembled, what moved it, and the cells of runs.csv.
 struct Made {

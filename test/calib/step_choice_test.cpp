@@ -9,13 +9,7 @@
 namespace pmg::calib {
 namespace {
 
-JointModel damped_joint() {
-  JointModel model;
-  model.actuator.transmission.armature_kg_m2 = 0.01;
-  model.actuator.friction.viscous_Nm_s_per_rad = 0.1;
-  model.actuator.friction.coulomb_Nm = 0.05;
-  return model;
-}
+JointModel damped_joint() { return test::plain_joint(0.05); }
 
 class StepChoice : public testing::Test {
  protected:

@@ -30,6 +30,15 @@ inline bench::Recording excitation(int number) {
   return recording;
 }
 
+/// A rotor, some viscous friction and this much dry friction.
+inline calib::JointModel plain_joint(double coulomb_Nm) {
+  calib::JointModel model;
+  model.actuator.transmission.armature_kg_m2 = 0.01;
+  model.actuator.friction.viscous_Nm_s_per_rad = 0.1;
+  model.actuator.friction.coulomb_Nm = coulomb_Nm;
+  return model;
+}
+
 /// A position PD on a horizontal axis or a pendulum.
 inline bench::Bench pd_bench(bool pendulum) {
   bench::Bench bench;

@@ -23,13 +23,7 @@ namespace fs = std::filesystem;
 using effects::Effect;
 using effects::Form;
 
-calib::JointModel dry_joint() {
-  calib::JointModel model;
-  model.actuator.transmission.armature_kg_m2 = 0.01;
-  model.actuator.friction.viscous_Nm_s_per_rad = 0.1;
-  model.actuator.friction.coulomb_Nm = 0.05;
-  return model;
-}
+calib::JointModel dry_joint() { return test::plain_joint(0.05); }
 
 /// A pendulum that a position PD moves, or a voltage servo without a recorded bus; both with temperatures, and with a
 /// speed in some commands.

@@ -21,13 +21,7 @@ namespace fs = std::filesystem;
 constexpr double kNoise_rad = 1e-3;
 const SeparationWanted kWanted{.noise_squares = kNoise_rad * kNoise_rad};
 
-calib::JointModel healthy_joint() {
-  calib::JointModel model;
-  model.actuator.transmission.armature_kg_m2 = 0.01;
-  model.actuator.friction.viscous_Nm_s_per_rad = 0.1;
-  model.actuator.friction.coulomb_Nm = 0.2;
-  return model;
-}
+calib::JointModel healthy_joint() { return test::plain_joint(0.2); }
 
 effects::NestedModel held(const calib::JointModel& model) {
   effects::NestedModel held;

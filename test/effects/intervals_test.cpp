@@ -21,13 +21,7 @@ namespace {
 
 constexpr double kNoise_rad = 1e-4, kNoise_rad2 = kNoise_rad * kNoise_rad, kDelay_s = 0.02;
 
-calib::JointModel dry_joint() {
-  calib::JointModel model;
-  model.actuator.transmission.armature_kg_m2 = 0.01;
-  model.actuator.friction.viscous_Nm_s_per_rad = 0.1;
-  model.actuator.friction.coulomb_Nm = 0.2;
-  return model;
-}
+calib::JointModel dry_joint() { return test::plain_joint(0.2); }
 
 calib::JointModel delayed_joint() {
   calib::JointModel model = dry_joint();

@@ -15,10 +15,7 @@ namespace {
 constexpr int kIterations = 12;
 
 calib::JointModel joint_with(double update_s, double order) {
-  calib::JointModel model;
-  model.actuator.transmission.armature_kg_m2 = 0.01;
-  model.actuator.friction.viscous_Nm_s_per_rad = 0.1;
-  model.actuator.friction.coulomb_Nm = 0.05;
+  calib::JointModel model = test::plain_joint(0.05);
   model.actuator.command.update_s = update_s;
   model.actuator.ripple.amplitude_Nm = order > 0.0 ? 0.4 : 0.0;
   model.actuator.ripple.order = order > 0.0 ? order : model.actuator.ripple.order;

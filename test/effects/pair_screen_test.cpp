@@ -7,13 +7,7 @@
 namespace pmg::effects {
 namespace {
 
-calib::JointModel without_effects() {
-  calib::JointModel model;
-  model.actuator.transmission.armature_kg_m2 = 0.01;
-  model.actuator.friction.viscous_Nm_s_per_rad = 0.1;
-  model.actuator.friction.coulomb_Nm = 0.1;
-  return model;
-}
+calib::JointModel without_effects() { return test::plain_joint(0.1); }
 
 TEST(ScreenedPairs, TheTwoEffectsOfAJointComeFirst) {
   const bench::Bench bench = test::pd_bench(true);

@@ -14,13 +14,7 @@
 namespace pmg::effects {
 namespace {
 
-calib::JointModel prompt_joint() {
-  calib::JointModel model;
-  model.actuator.transmission.armature_kg_m2 = 0.01;
-  model.actuator.friction.viscous_Nm_s_per_rad = 0.1;
-  model.actuator.friction.coulomb_Nm = 0.05;
-  return model;
-}
+calib::JointModel prompt_joint() { return test::plain_joint(0.05); }
 
 NestedFit recorded_with(double update_s) {
   calib::JointModel truth = prompt_joint();

@@ -11,13 +11,7 @@
 namespace pmg::effects {
 namespace {
 
-calib::JointModel smooth_joint() {
-  calib::JointModel model;
-  model.actuator.transmission.armature_kg_m2 = 0.01;
-  model.actuator.friction.viscous_Nm_s_per_rad = 0.1;
-  model.actuator.friction.coulomb_Nm = 0.05;
-  return model;
-}
+calib::JointModel smooth_joint() { return test::plain_joint(0.05); }
 
 struct Wave {
   const char *effect, *form;

@@ -10,13 +10,7 @@
 namespace pmg::effects {
 namespace {
 
-calib::JointModel healthy() {
-  calib::JointModel model;
-  model.actuator.transmission.armature_kg_m2 = 0.01;
-  model.actuator.friction.viscous_Nm_s_per_rad = 0.1;
-  model.actuator.friction.coulomb_Nm = 0.3;
-  return model;
-}
+calib::JointModel healthy() { return test::plain_joint(0.3); }
 
 /// Likeness of two effects with these values on a bench of a joint that has them.
 double likeness_of(const char* first, const char* second, const std::vector<std::pair<const char*, double>>& values) {

@@ -25,13 +25,7 @@ namespace fs = std::filesystem;
 constexpr double kNoise_rad = 2e-4;
 constexpr int kConditions = 8;
 
-calib::JointModel healthy() {
-  calib::JointModel joint;
-  joint.actuator.transmission.armature_kg_m2 = 0.01;
-  joint.actuator.friction.viscous_Nm_s_per_rad = 0.1;
-  joint.actuator.friction.coulomb_Nm = 0.05;
-  return joint;
-}
+calib::JointModel healthy() { return test::plain_joint(0.05); }
 
 /// (q, dq) => torque on the joint that the healthy one hasn't [Nm].
 using Hidden = std::function<double(double q_rad, double dq_rad_s)>;
