@@ -141,6 +141,8 @@ std::vector<std::string> remarks(const diagnosis::Diagnosis& found, const bench:
     lines.push_back(fmt::format("The bench's loads were off: inertia times {:.4g}, gravity torque times {:.4g}",
                                 found.after.inertia_scale, found.after.gravity_scale));
   }
+  if (found.after.zero_slip_rad != 0.0)
+    lines.push_back("sensor.zero_offset_rad is the one after the slip, which the joint has had from then on");
   return lines;
 }
 
@@ -255,8 +257,9 @@ int diagnose(Arguments arguments) {
                   {"peak_memory_MiB", cost.used.peak_memory_MiB},
                   {"rollouts", cost.simulated.rollouts},
                   {"steps", cost.simulated.steps}};
-  io::write_whole_file(arguments.out / "motor.yaml",
-                       sim::motor_yaml({{arguments.joint, found.after.actuator}}, remarks(found, bench)));
+  io::write_whole_file(
+      arguments.out / "motor.yaml",
+      sim::motor_yaml({{arguments.joint, calib::after_the_slip(found.after).actuator}}, remarks(found, bench)));
   if (found.next_excitation) diagnosis::write_next_excitation(next, bench, *found.next_excitation);
   io::write_whole_file(arguments.out / "report.html",
                        diagnosis_page::page_of(bench, found, runs, arguments.threads).html());

@@ -157,6 +157,7 @@ BenchRun describe(const Bench& bench, std::size_t row) {
   run.kd = number(bench.runs, row, "kd_Nm_s_per_rad").value_or(bench.kd_of_law);
   run.temp_C = number(bench.runs, row, "temp_C");
   run.load = load_of(bench, row);
+  run.place = (static_cast<double>(row) + 0.5) / static_cast<double>(bench.runs.rows.size());
   return run;
 }
 

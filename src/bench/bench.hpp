@@ -36,6 +36,7 @@ struct AssemblyDifference {
 struct BenchRun {
   std::string file, trajectory;
   int repeat = 0;
+  double place = 1.0;            ///< among the recordings of runs.csv: near 0 the first, near 1 the last; 1 after all
   std::optional<double> temp_C;  ///< from runs.csv
   double kp = 1.0, kd = 0.0;     ///< commanded gains, in the drive's own unit; kp = 1 and kd = 0 without a column
   JointLoad load;

@@ -65,6 +65,12 @@ double simulation_step_s(const bench::Bench& bench) {
   return std::min(model::kBusPeriod_s, 0.25 / bench.sample_rate_hz);
 }
 
+JointModel after_the_slip(JointModel model) {
+  model.actuator.sensor.zero_offset_rad += model.zero_slip_rad;
+  model.zero_slip_rad = 0.0;
+  return model;
+}
+
 SingleJoint::SingleJoint(const bench::Bench& bench, bench::BenchRun run, double step_s)
     : run_(std::move(run)), step_s_(step_s), start_reading_rad_(resting_reading_rad(run_.recording)) {
   const bench::Recording& r = run_.recording;
@@ -104,7 +110,7 @@ SingleJoint::Start SingleJoint::start(const JointModel& model) const {
   constexpr double kTurn_rad = 2.0 * std::numbers::pi;
   constexpr int kHalvings = 40;  // of at most half a turn: far below any sensor's quantum
   const double motor_rad = sim::ActuatorModel::joint_rad(model.actuator, start_reading_rad_, 0.0);
-  const double on_motor = model.actuator.sensor.on_motor, weight_Nm = run_.load.gravity_Nm * model.gravity_scale;
+  const double on_motor = model.actuator.sensor.on_motor, weight_Nm = load(model).gravity_Nm;
   const auto load_Nm = [&](double q_rad) { return weight_Nm * std::sin(q_rad - run_.load.hangs_at_rad); };
   if (on_motor == 0.0 || weight_Nm == 0.0) return {motor_rad, load_Nm(motor_rad)};
   const double lowest_rad = run_.load.hangs_at_rad + (weight_Nm > 0.0 ? 0.0 : 0.5 * kTurn_rad);
@@ -118,6 +124,12 @@ SingleJoint::Start SingleJoint::start(const JointModel& model) const {
     ((q_rad < foreseen_rad) == (high_rad > low_rad) ? low_rad : high_rad) = q_rad;
   }
   return {high_rad, load_Nm(high_rad)};
+}
+
+bench::JointLoad SingleJoint::load(const JointModel& model) const {
+  const double gravity_Nm =
+      run_.load.gravity_Nm == 0.0 ? 0.0 : run_.load.gravity_Nm * model.gravity_scale + model.more_gravity_Nm;
+  return {run_.load.inertia_kg_m2 * model.inertia_scale + model.more_inertia_kg_m2, gravity_Nm, run_.load.hangs_at_rad};
 }
 
 SingleJoint SingleJoint::beginning(double seconds) const {
@@ -140,22 +152,23 @@ SingleJoint SingleJoint::beginning(double seconds) const {
   return found;
 }
 
-JointModel SingleJoint::of_assembly(JointModel model) const {
+JointModel SingleJoint::of_run(JointModel model) const {
   for (const bench::AssemblyDifference& differs : run_.differs) {
     const double sum = value(model, differs.parameter) + differs.amount;
     set(model, differs.parameter, std::clamp(sum, differs.lower, differs.upper));
   }
-  return model;
+  if (run_.place < model.zero_slip_at) model.zero_slip_rad = 0.0;
+  return after_the_slip(model);
 }
 
 template <typename Seen>
 void SingleJoint::simulate(const JointModel& of_all, Seen&& seen) const {
-  const JointModel model = of_assembly(of_all);
+  const JointModel model = of_run(of_all);
   sim::ActuatorModel actuator(model.actuator, step_s_);
   const Start begin = start(model);
   double q_rad = begin.q_rad, dq_rad_s = 0.0;
-  const double inertia_kg_m2 = run_.load.inertia_kg_m2 * model.inertia_scale + actuator.joint_armature_kg_m2();
-  const double gravity_Nm = run_.load.gravity_Nm * model.gravity_scale;
+  const bench::JointLoad load = this->load(model);
+  const double inertia_kg_m2 = load.inertia_kg_m2 + actuator.joint_armature_kg_m2();
   sim::ActuatorInput now;
   std::size_t told_sample = inputs_.size();
   const auto tell = [&](std::size_t step) {
@@ -173,7 +186,7 @@ void SingleJoint::simulate(const JointModel& of_all, Seen&& seen) const {
   std::size_t sample = 0;
   for (std::size_t k = 0; k < sample_of_step_.size(); ++k) {
     tell(k);
-    now.external_Nm = gravity_Nm != 0.0 ? -gravity_Nm * std::sin(q_rad - run_.load.hangs_at_rad) : 0.0;
+    now.external_Nm = load.gravity_Nm != 0.0 ? -load.gravity_Nm * std::sin(q_rad - load.hangs_at_rad) : 0.0;
     const sim::ActuatorTorque drive = actuator.step(now, q_rad, dq_rad_s);
     const double torque_Nm = drive.torque_Nm + now.external_Nm;
     dq_rad_s += step_s_ * torque_Nm / (inertia_kg_m2 - step_s_ * drive.slope_Nm_s_per_rad);

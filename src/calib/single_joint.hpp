@@ -14,8 +14,16 @@ namespace pmg::calib {
 struct JointModel {
   model::ActuatorParameters actuator;
   double inertia_scale = 1.0, gravity_scale = 1.0;  ///< of the bench's loads
-  double feed_forward_scale = 1.0;                  ///< of the recorded feed-forward
+  /// Of something that turns with every load and that no load's numbers have: an arm, a pulley.
+  double more_inertia_kg_m2 = 0.0, more_gravity_Nm = 0.0;
+  double feed_forward_scale = 1.0;  ///< of the recorded feed-forward
+  /// By how much the sensor's zero slipped between two recordings, and the place of the slip among them
+  /// (bench::BenchRun::place). Runs from there on have it.
+  double zero_slip_rad = 0.0, zero_slip_at = 0.0;
 };
+
+/// (model) => (what it is once the sensor's zero has slipped: the slip is part of the offset). What a joint is now.
+JointModel after_the_slip(JointModel model);
 
 /// Errors of a rollout, summed over the recording's valid samples.
 struct RolloutError {
@@ -38,11 +46,14 @@ class SingleJoint {
 
   RolloutError error(const JointModel& model) const;
 
+  /// (model) => (the load of this run as the model has it). A rig without gravity has none, whatever turns on it.
+  bench::JointLoad load(const JointModel& model) const;
+
   const bench::BenchRun& run() const { return run_; }
   /// Sets what differs from the model in this run's assembly; later rollouts have it.
   void set_differences(std::vector<bench::AssemblyDifference> differs) { run_.differs = std::move(differs); }
-  /// (model of all runs) => (the model of this run's assembly).
-  JointModel of_assembly(JointModel model) const;
+  /// (model of all runs) => (the model of this run: of its assembly, and of its place among the recordings).
+  JointModel of_run(JointModel model) const;
   /// The same run as if it had ended after so many seconds, from the same rest. At least two samples stay.
   SingleJoint beginning(double seconds) const;
   double step_s() const { return step_s_; }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -11,8 +12,29 @@ namespace pmg::calib {
 namespace {
 
 constexpr double kBend = 5.0;  // exponent of a range from 0: the first tenth of the edge covers 1/230 of it
-constexpr const char* kInertia = "load.inertia_scale";
-constexpr const char* kGravity = "load.gravity_scale";
+
+/// A parameter of the recordings, which no actuator has.
+struct OfRecordings {
+  const char* name;
+  double JointModel::*number;
+  model::Quantity quantity;
+  double lower, upper;
+};
+
+constexpr std::array kOfRecordings = {
+    OfRecordings{kInertia, &JointModel::inertia_scale, model::Quantity::kFactor, 0.3, 3.0},
+    OfRecordings{kGravity, &JointModel::gravity_scale, model::Quantity::kFactor, 0.3, 3.0},
+    OfRecordings{kMoreInertia, &JointModel::more_inertia_kg_m2, model::Quantity::kInertia, 0.0, 0.5},
+    OfRecordings{kMoreGravity, &JointModel::more_gravity_Nm, model::Quantity::kTorque, -5.0, 5.0},
+    OfRecordings{kZeroSlip, &JointModel::zero_slip_rad, model::Quantity::kAngle, -0.3, 0.3},
+    OfRecordings{kZeroSlipAt, &JointModel::zero_slip_at, model::Quantity::kPlace, 0.0, 1.0},
+};
+
+/// Null if it is an actuator's.
+const OfRecordings* of_recordings(const std::string& name) {
+  const auto found = std::ranges::find(kOfRecordings, name, &OfRecordings::name);
+  return found == kOfRecordings.end() ? nullptr : &*found;
+}
 
 }  // namespace
 
@@ -93,15 +115,20 @@ fitting::Coordinates ranges(const Unknowns& unknowns) {
 }
 
 model::Quantity quantity(const std::string& name) {
-  return name == kInertia || name == kGravity ? model::Quantity::kFactor : model::actuator_parameter(name).quantity;
+  const OfRecordings* one = of_recordings(name);
+  return one != nullptr ? one->quantity : model::actuator_parameter(name).quantity;
 }
 
 Unknown unknown(const std::string& name, const bench::Bench& bench) {
-  if (name == kInertia || name == kGravity) return {name, model::Quantity::kFactor, 0.3, 3.0};
+  const bool linear = bench.rig == bench::Rig::kLinear;
+  if (const OfRecordings* one = of_recordings(name)) {
+    const double scale = linear ? model::factor_on_linear_axis(one->quantity) : 1.0;
+    return {name, one->quantity, one->lower * scale, one->upper * scale};
+  }
   const model::ActuatorParameter& p = model::actuator_parameter(name);
   // A servo firmware's gain: its unit per radian of error, at a duty of 1.
   if (bench.law == bench::DriveLaw::kServoVoltage && name == "drive.kp_scale") return {name, p.quantity, 1e-4, 5.0};
-  if (bench.rig != bench::Rig::kLinear) return {name, p.quantity, p.lower, p.upper};
+  if (!linear) return {name, p.quantity, p.lower, p.upper};
   if (name == "friction.presliding_rad") return {name, p.quantity, 1e-6, 1e-3};
   const double scale = model::factor_on_linear_axis(p.quantity);
   return {name, p.quantity, p.lower * scale, p.upper * scale};
@@ -149,16 +176,14 @@ std::vector<std::string> unknown_loads(const bench::Bench& bench) {
 }
 
 double value(const JointModel& model, const std::string& name) {
-  if (name == kInertia) return model.inertia_scale;
-  if (name == kGravity) return model.gravity_scale;
+  const OfRecordings* one = of_recordings(name);
+  if (one != nullptr) return model.*one->number;
   return model::actuator_parameter(name).value(model.actuator);
 }
 
 void set(JointModel& model, const std::string& name, double value) {
-  if (name == kInertia)
-    model.inertia_scale = value;
-  else if (name == kGravity)
-    model.gravity_scale = value;
+  if (const OfRecordings* one = of_recordings(name))
+    model.*one->number = value;
   else
     model::actuator_parameter(name).in(model.actuator) = value;
 }

@@ -17,9 +17,18 @@ enum class Scale { kLinear, kLogarithmic, kFromZero };
 /// above 0, from zero if it starts at 0, else linear.
 Scale scale_of_range(double lower, double upper);
 
+/// What the recordings have beside their actuator: their loads' scales, what turns with every load, and where the
+/// sensor's zero slipped.
+constexpr const char* kInertia = "load.inertia_scale";
+constexpr const char* kGravity = "load.gravity_scale";
+constexpr const char* kMoreInertia = "load.more_inertia_kg_m2";
+constexpr const char* kMoreGravity = "load.more_gravity_Nm";
+constexpr const char* kZeroSlip = "recordings.zero_slip_rad";
+constexpr const char* kZeroSlipAt = "recordings.zero_slip_at";
+
 /// A free parameter. A fit moves its coordinate, a search over the whole range its share of the range of coordinates.
 struct Unknown {
-  std::string name;  ///< an actuator's ("friction.coulomb_Nm"), or load.inertia_scale, load.gravity_scale
+  std::string name;  ///< an actuator's ("friction.coulomb_Nm"), or one of the recordings'
   model::Quantity quantity;
   double lower, upper;
   Scale scale = Scale::kLinear;
@@ -51,11 +60,11 @@ JointModel model_at(JointModel model, const Unknowns& unknowns, const Eigen::Vec
 Eigen::VectorXd coordinates(const Unknowns& unknowns, const JointModel& model);
 fitting::Coordinates ranges(const Unknowns& unknowns);
 
-/// (name of an actuator's or a load's parameter, bench) => (the parameter with its range on this rig). Throws
+/// (name of an actuator's or the recordings' parameter, bench) => (the parameter with its range on this rig). Throws
 /// std::invalid_argument that lists the names.
 Unknown unknown(const std::string& name, const bench::Bench& bench);
 
-/// Of an actuator's or a load's parameter. Throws as unknown() does.
+/// Of an actuator's or the recordings' parameter. Throws as unknown() does.
 model::Quantity quantity(const std::string& name);
 
 /// The paper's parameters (III-C.1: Kp, Kd, I) for this bench's drive law, and those that bench.yaml calls unknown.

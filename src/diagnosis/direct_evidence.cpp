@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/unknown.hpp"
 #include "effects/catalogue.hpp"
 #include "effects/strengths.hpp"
 
@@ -10,11 +11,11 @@ namespace pmg::diagnosis {
 
 bool in_base(const std::string& name, const model::ActuatorParameters& base) {
   const std::vector<effects::Form>& forms = effects::effect(name).forms;
+  calib::JointModel model;
+  model.actuator = base;
   return std::any_of(forms.begin(), forms.end(), [&](const effects::Form& form) {
     return std::any_of(form.parameters.begin(), form.parameters.end(), [&](const std::string& parameter) {
-      if (parameter.starts_with("load.")) return false;
-      const model::ActuatorParameter& p = model::actuator_parameter(parameter);
-      return p.value(base) != p.value({});
+      return calib::value(model, parameter) != calib::value({}, parameter);
     });
   });
 }

@@ -12,6 +12,12 @@
 
 namespace pmg::diagnosis {
 
+namespace {
+
+constexpr double kHopeless = 0.25;  // of what is asked for, after a first fit
+
+}  // namespace
+
 std::string EffectSearch::aliased(const Trial& trial, const std::vector<Trial>& round) const {
   if (!effects::has_other_sign(trial.effect, trial.extension.fitted.model)) return "";
   for (const Trial& other : round) {
@@ -57,6 +63,20 @@ const Trial* EffectSearch::chosen(std::vector<Trial>& trials) const {
   return chosen;
 }
 
+/// (trials of which none is convincing, the best first) => (the best one, if that is convincing as one that is clearly
+/// better than every other; else null).
+const Trial* EffectSearch::clearly_best(std::vector<Trial>& trials) const {
+  const bool rivalled = std::any_of(trials.begin() + 1, trials.end(), [&](const Trial& other) {
+    return compared(other.extension, trials.front().extension).deviations < options_.clearly_deviations;
+  });
+  if (rivalled) return nullptr;
+  trials.front().clearly_best = true;
+  const std::string against = objection(trials.front());
+  if (!against.empty()) return nullptr;
+  trials.front().against = "";
+  return &trials.front();
+}
+
 /// (extension, the one before its newest effect) => (extension without superfluous effects). An earlier effect may be a
 /// proxy for a later one. The newest effect may only have helped a fit that had not converged: then a refit without it,
 /// started from here, regains more than half of its gain. Costs a fit for each effect.
@@ -68,7 +88,9 @@ Extension EffectSearch::pruned(Extension current, const Extension& before) {
     const double regained = before.fitted.squares - rest.fitted.squares;
     const bool unfinished = regained > options_.regained_share * (before.fitted.squares - current.fitted.squares);
     const bool judged = measured(name) == nullptr && (!newest || unfinished);
-    if (!judged || objection(trial(rest, current, name)).empty()) {
+    Trial again = trial(rest, current, name);
+    again.clearly_best = true;  // it was chosen in a round of its own
+    if (!judged || objection(again).empty()) {
       ++e;
     } else {
       current = rest;
@@ -160,7 +182,12 @@ Extension EffectSearch::with_simpler_forms(Extension current) {
     if (least == starts.end()) continue;
     effects::Forms forms = current.forms;
     forms[name] = least->form;
-    std::vector<Trial> beside = additions(extend(current.effects, forms, least->model));
+    Extension simple = extend(current.effects, forms, least->model);
+    if (compared(simple, current).deviations < options_.better_form_deviations) {
+      current = std::move(simple);  // beside effects that came later
+      continue;
+    }
+    std::vector<Trial> beside = additions(simple);
     const Trial* other = chosen(beside);
     if (other == nullptr) continue;
     const double better = compared(current, other->extension).deviations;
@@ -177,6 +204,7 @@ Extension EffectSearch::completed(Extension current) {
   for (std::size_t round = 0; round < static_cast<std::size_t>(options_.most_effects) && !stopped_; ++round) {
     last_additions_ = additions(current);
     const Trial* next = chosen(last_additions_);
+    if (next == nullptr && !last_additions_.empty()) next = clearly_best(last_additions_);
     if (next != nullptr) {
       current = in_best_forms(pruned(next->extension, current));
       continue;
@@ -208,6 +236,19 @@ Extension EffectSearch::with_constant(const calib::Unknown& constant, const std:
   return found;
 }
 
+/// (extension, where to begin) => (a first fit with this constant of the model free, too; its folds are foretold).
+Extension EffectSearch::begun_with_constant(const calib::Unknown& constant, const Extension& of,
+                                            const calib::JointModel& start) {
+  const effects::RolloutJacobian& known = look_at(of).screen.jacobian();
+  calib::Unknowns unknowns = of.fitted.unknowns;
+  calib::put(unknowns, constant);
+  Extension found{
+      of.effects, fit_.fit(start, unknowns, static_cast<int>(options_.few_iterations), &known), {}, of.forms, {}};
+  if (found.fitted.blocks.empty()) fit_.linearise(found.fitted, &known);
+  found.held_out = fitting::foretold_held_out_squares(found.fitted, compare_.folds());
+  return found;
+}
+
 /// The constant is free from now on, and begins where this fit has it.
 void EffectSearch::free_constant(const calib::Unknown& constant, const Extension& with) {
   base_.unknowns.push_back(constant);
@@ -226,6 +267,10 @@ std::string EffectSearch::made_of_constant(const Extension& chosen, const Extens
   const calib::JointModel start = fits_.without(chosen.fitted.model, effect, without.effects, chosen.forms);
   for (const calib::Unknown& constant : calib::Unknowns(base_.constants)) {
     if (!going(fmt::format("trying {} in its place", constant.name))) return "";
+    const double gain = without.fitted.squares - chosen.fitted.squares;
+    if (without.fitted.squares - begun_with_constant(constant, without, without.fitted.model).fitted.squares <
+        kHopeless * gain)
+      continue;
     const Extension other = with_constant(constant, without.effects, without.forms, start);
     if (compared(without, other).deviations < options_.least_deviations ||
         compared(other, chosen).deviations >= options_.least_deviations)
@@ -243,6 +288,8 @@ std::string EffectSearch::made_of_constant(const Extension& chosen, const Extens
 std::optional<Extension> EffectSearch::with_a_constant_that_shows(const Extension& chosen) {
   for (const calib::Unknown& constant : calib::Unknowns(base_.constants)) {
     if (!going(fmt::format("trying {} beside the effects", constant.name))) return std::nullopt;
+    const Extension begun = begun_with_constant(constant, chosen, chosen.fitted.model);
+    if (compared(chosen, begun).deviations < kHopeless * options_.least_deviations) continue;
     Extension other = with_constant(constant, chosen.effects, chosen.forms, chosen.fitted.model);
     if (compared(chosen, other).deviations < options_.least_deviations) continue;
     free_constant(constant, other);

@@ -9,6 +9,7 @@
 #include "calib/unknown.hpp"
 #include "effects/catalogue.hpp"
 #include "effects/other_starts.hpp"
+#include "effects/period.hpp"
 
 namespace pmg::diagnosis {
 
@@ -22,6 +23,11 @@ std::vector<std::string> with(std::vector<std::string> effects, const std::strin
 std::vector<std::string> less(std::vector<std::string> effects, const std::string& effect) {
   std::erase(effects, effect);
   return effects;
+}
+
+std::vector<std::string> periods(std::vector<std::string> parameters) {
+  std::erase_if(parameters, [](const std::string& name) { return !effects::is_period(name); });
+  return parameters;
 }
 
 }  // namespace
@@ -147,8 +153,11 @@ std::vector<std::string> EffectSearch::fitted_parameters(const Extension& extens
 }
 
 effects::NestedModel EffectSearch::from_other_starts(const Extension& with_priors) const {
-  return effects::from_other_starts(fit_, with_priors.fitted, fitted_parameters(with_priors),
-                                    static_cast<int>(options_.many_iterations));
+  const int iterations = static_cast<int>(options_.many_iterations);
+  std::vector<std::string> parameters = fitted_parameters(with_priors);
+  effects::NestedModel model = effects::from_other_periods(fit_, with_priors.fitted, periods(parameters), iterations);
+  std::erase_if(parameters, effects::is_period);
+  return effects::from_other_starts(fit_, std::move(model), parameters, iterations);
 }
 
 Trial EffectSearch::trial(const Extension& without, const Extension& with, const std::string& effect) const {
@@ -236,13 +245,25 @@ std::vector<Trial> EffectSearch::tried(const Extension& current, double most, bo
     if (!going(fmt::format("finishing {}", effects::effect(trials[t].effect).title))) return {};
     Extension begun = trials[t].extension;
     if (finish)
-      begun = extend(begun.effects, begun.forms, begun.fitted.model);
+      begun = at_best_period(extend(begun.effects, begun.forms, begun.fitted.model), trials[t].effect);
     else
       begun.held_out = fit_.held_out_squares(begun.fitted, compare_.folds());
     trials[t] = trial(current, begun, trials[t].effect);
   }
   std::stable_sort(trials.begin(), trials.end(), better);
   return trials;
+}
+
+/// (extension, its effect) => (the same at the period that is best once the other numbers follow). Where a hold is
+/// missed, other numbers make up for part of it: beside them a shorter period does better than the right one.
+Extension EffectSearch::at_best_period(Extension extension, const std::string& effect) const {
+  const effects::NestedModel better =
+      effects::from_other_periods(fit_, extension.fitted, periods(effects::form_of(effect, extension.forms).parameters),
+                                  static_cast<int>(options_.few_iterations));
+  if (!(better.squares < extension.fitted.squares)) return extension;
+  extension.fitted = better;
+  extension.held_out = fit_.held_out_squares(better, compare_.folds());
+  return extension;
 }
 
 std::vector<Trial> EffectSearch::additions(const Extension& to) { return tried(to, options_.fitted_effects, true); }

@@ -26,8 +26,9 @@ struct Trial {
   fitting::Comparison comparison;  ///< extension without the effect against extension with it
   double share_of_rest = 0.0;      ///< gain as a share of the squares above a healthy model's without the effect
   Extension extension;
-  std::string against{};     ///< why it was not taken where it was tried; "" if it was, or might have been
-  bool missed_alone = true;  ///< without it more would remain than a verdict forgives (remains_of_noise)
+  std::string against{};      ///< why it was not taken where it was tried; "" if it was, or might have been
+  bool missed_alone = true;   ///< without it more would remain than a verdict forgives (remains_of_noise)
+  bool clearly_best = false;  ///< of its round, in which nothing else is convincing
 };
 
 /// A chosen extension, and its fit with priors. `chosen` is that fit where it is better.
@@ -142,6 +143,7 @@ class EffectSearch {
   bool was_left_out(const std::string& effect) const;
   Extension with_constant(const calib::Unknown& constant, const std::vector<std::string>& effects,
                           const effects::Forms& forms, const calib::JointModel& start);
+  Extension begun_with_constant(const calib::Unknown& constant, const Extension& of, const calib::JointModel& start);
   void free_constant(const calib::Unknown& constant, const Extension& with);
   std::optional<Extension> with_a_constant_that_shows(const Extension& chosen);
   std::string made_of_constant(const Extension& chosen, const Extension& without, const std::string& effect);
@@ -150,9 +152,11 @@ class EffectSearch {
                    const calib::JointModel& start) const;
   Trial trial(const Extension& without, const Extension& with, const std::string& effect) const;
   std::string doubt(const Trial& trial) const;
+  Extension at_best_period(Extension extension, const std::string& effect) const;
   std::vector<Trial> tried(const Extension& without, double most, bool all_evident);
   bool stands_for(const Trial& special, const Trial& of) const;
   const Trial* chosen(std::vector<Trial>& trials) const;
+  const Trial* clearly_best(std::vector<Trial>& trials) const;
   bool leaves_rest(const Extension& extension) const;
   std::string objection_to_pair(const Extension& pair, const std::string& first, const std::string& second);
   std::optional<Extension> with_pair(const Extension& current);

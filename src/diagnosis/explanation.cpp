@@ -16,6 +16,7 @@
 #include "effects/period.hpp"
 #include "effects/separation.hpp"
 #include "effects/strengths.hpp"
+#include "effects/zero_slip.hpp"
 
 namespace pmg::diagnosis {
 
@@ -82,6 +83,7 @@ class Explaining {
                       "gain is {:.0f} of its deviations",
                       100.0 * gain.folds_won, gain.deviations));
     }
+    add_place(cause);
     add_checks(cause);
     if (measured == nullptr) add_rivals(cause, rest);
     return cause;
@@ -97,6 +99,17 @@ class Explaining {
       const double below = interval.value - interval.low, above = interval.high - interval.value;
       interval.low = std::min(interval.low, there->second - below);
       interval.high = std::max(interval.high, there->second + above);
+    }
+  }
+
+  void add_place(Cause& cause) const {
+    for (const evidence::ParameterEstimate& p : cause.parameters) {
+      if (!effects::is_place(p.name)) continue;
+      const auto [before, after] = effects::slip_gap(from_.all.runs(), p.estimate.value);
+      if (before == nullptr || after == nullptr) continue;
+      cause.evidence.push_back(
+          fmt::format("it slipped after {} and before {}, if runs.csv lists the recordings in their order",
+                      before->file, after->file));
     }
   }
 
@@ -150,6 +163,10 @@ class Explaining {
       const auto [low_s, high_s] = effects::period_range(from_.searched, from_.fitted, parameter, noise_squares_,
                                                          from_.options.apart_deviations);
       return {parameter, {value, low_s, high_s}, "s"};
+    }
+    if (effects::is_place(parameter)) {
+      const auto [before, after] = effects::slip_gap(from_.all.runs(), value);
+      return {parameter, {value, before == nullptr ? 0.0 : before->place, after == nullptr ? 1.0 : after->place}, ""};
     }
     return {parameter, {value, value, value}, ""};
   }

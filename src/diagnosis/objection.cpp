@@ -102,7 +102,9 @@ std::string EffectSearch::objection(const Trial& trial) const {
   // A second effect that only mends the first one's form leaves a rest itself, or mends what a verdict forgives.
   const double least = std::pow(limits_.of_beginning, 2), usual = usual_rest(base_extension_);
   const bool few_blocks = beginning > options_.mean_of_few_blocks * usual && c.usual_gain >= least * usual;
-  const bool counts = trial.missed_alone && (few_blocks || trial.share_of_rest >= options_.nearly_all_of_rest);
+  const bool all = trial.clearly_best && trial.share_of_rest >= options_.all_of_rest &&
+                   c.deviations >= options_.all_of_rest_deviations;
+  const bool counts = all || (trial.missed_alone && (few_blocks || trial.share_of_rest >= options_.nearly_all_of_rest));
   if (gain < least * beginning && !counts) return "what it explains is small against the initial residual";
   if (trial.share_of_rest < limits_.of_rest) {
     return fmt::format("it explains {:.0f} % of what is left: model-form errors of other effects can explain as much",
@@ -123,12 +125,14 @@ std::string EffectSearch::doubt(const Trial& trial) const {
   const effects::NestedModel& fitted = trial.extension.fitted;
   const effects::Forms& forms = trial.extension.forms;
   if (fitted.blocks.empty()) return "";
+  // What one torque does, the other effect would do alone.
+  const bool needed = trial.missed_alone && trial.share_of_rest >= options_.nearly_all_of_rest;
   for (const std::string& other : trial.extension.effects) {
     if (other == trial.effect) continue;
     if (at_edge(other, forms, fitted, base_.model) != nullptr)
       return fmt::format("with it {} ends at the edge of its range", effects::title(other));
     const double alike = effects::likeness(fitted, forms, base_.model, trial.effect, other);
-    if (alike * alike > options_.one_torque)
+    if (!needed && alike * alike > options_.one_torque)
       return fmt::format("on these runs it is the torque of {} by another name", effects::title(other));
   }
   return unsure(trial.effect, forms, fitted);

@@ -52,7 +52,7 @@ std::vector<Effect> drive_effects() {
       {.name = "supply_sag",
        .title = "bus sag",
        .forms = {law("resistance", "of a source with a resistance", {"drive.supply_sag_per_Nm"}, "Horowitz, Hill 2015",
-                     where(feels_bus, each({0.05, 0.2, 0.5, 1.0}))),
+                     where(feels_bus, each({0.05, 0.2, 0.5, 1.0, 2.0, 4.0}))),
                  law("battery", "of a battery that takes time",
                      {"drive.supply_sag_per_Nm", "drive.supply_sag_time_s", "drive.supply_sag_slow_share"},
                      "Chen, Rincon-Mora 2006", where(feels_bus, grid({{0.2, 0.6}, {0.2, 0.8}, {0.5}}))),

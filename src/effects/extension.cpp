@@ -4,6 +4,7 @@
 
 #include "calib/unknown.hpp"
 #include "effects/period.hpp"
+#include "effects/zero_slip.hpp"
 
 namespace pmg::effects {
 
@@ -67,11 +68,11 @@ Extension ExtensionFits::fitted(const std::vector<std::string>& effects, const F
   Extension extension{effects, fit_.fit(start, free, most_iterations), {}, forms, {}};
   for (const std::string& name : effects) {
     for (const std::string& parameter : form_of(name, forms).parameters) {
-      if (!is_period(parameter)) continue;
+      if (!is_period(parameter) && !is_place(parameter)) continue;
       calib::JointModel better = extension.fitted.model;
-      const double period_s = best_period_s(fit_, better, parameter);
-      if (period_s == calib::value(better, parameter)) continue;
-      calib::set(better, parameter, period_s);
+      const double best = is_place(parameter) ? best_slip_place(fit_, better) : best_period_s(fit_, better, parameter);
+      if (best == calib::value(better, parameter)) continue;
+      calib::set(better, parameter, best);
       extension.fitted = fit_.fit(better, free, most_iterations);
     }
   }

@@ -58,6 +58,8 @@ Starts where(bool (*possible)(const StartsFrom&), Starts starts) {
   };
 }
 
+double by_itself(const StartsFrom&) { return 1.0; }
+
 bool closes_loop(const StartsFrom& from) { return from.scale.law != bench::DriveLaw::kTorque; }
 
 bool switches_off(const StartsFrom& from) { return from.scale.switches_off; }

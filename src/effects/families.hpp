@@ -37,6 +37,9 @@ Starts more_or_less(std::vector<double> multiples);
 Starts these(Values values);
 Starts where(bool (*possible)(const StartsFrom&), Starts starts);
 
+/// 1: a start's multiple is its value.
+double by_itself(const StartsFrom&);
+
 /// The drive has a position loop of its own.
 bool closes_loop(const StartsFrom& from);
 

@@ -9,6 +9,9 @@ namespace {
 
 bool has_viscous_friction(const StartsFrom& from) { return from.actuator.friction.viscous_Nm_s_per_rad > 0.0; }
 
+bool has_no_viscous_friction(const StartsFrom& from) { return !has_viscous_friction(from); }
+double usual_damping(const StartsFrom& from) { return usual(model::Quantity::kDamping, from.scale).start; }
+
 std::vector<double> positive_torque(const Measured& m) { return {std::max(0.0, m.torque_Nm)}; }
 std::vector<double> slow_torque(const Measured& m) { return {m.torque_Nm, m.slow_rad_s}; }
 std::vector<double> both_ways(const Measured& m) { return {m.torque_Nm, m.torque_Nm}; }
@@ -98,7 +101,11 @@ std::vector<Effect> friction_effects() {
                      "Canudas de Wit, Astrom, Braun 1987", where(has_viscous_friction, each({-0.5, 0.5}))),
                  law("stribeck", "of Stribeck friction",
                      {"friction.stribeck_asymmetry", "friction.stribeck_Nm", "friction.stribeck_rad_s"},
-                     "Armstrong-Helouvry 1991", grid({{0.8, -0.8}, {0.1}, {0.1}}))},
+                     "Armstrong-Helouvry 1991", grid({{0.8, -0.8}, {0.1}, {0.1}})),
+                 law("viscous_too", "of viscous friction that the simulation lacks",
+                     {"friction.viscous_asymmetry", "friction.viscous_Nm_s_per_rad"},
+                     "Canudas de Wit, Astrom, Braun 1987",
+                     where(has_no_viscous_friction, grid({{0.8, -0.8}, {0.05, 0.2}}, {by_itself, usual_damping})))},
        .shows = "one direction misses more than the other, in proportion to the friction",
        .needs = "motion in both directions",
        .workshop = {"friction that is stronger in one direction",

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 
+#include "calib/joint_runs.hpp"
 #include "effects/period.hpp"
 
 namespace pmg::effects {
@@ -70,6 +71,19 @@ NestedModel from_other_starts(const NestedFit& fit, NestedModel model, const std
   }
   if (cost(model) < first && model.blocks.empty()) fit.linearise(model);
   return model;
+}
+
+NestedModel from_other_periods(const NestedFit& fit, const NestedModel& model, const std::vector<std::string>& periods,
+                               int most_iterations) {
+  if (periods.empty()) return model;
+  const NestedFit few(calib::spread(fit.runs(), kRunsForPeriods), fit.threads());
+  const NestedModel first = few.fit(model.model, model.unknowns, most_iterations, nullptr, model.prior_weight),
+                    better = from_other_starts(few, first, periods, most_iterations);
+  if (!(cost(better) < cost(first))) return model;
+  NestedModel all = fit.fit(better.model, model.unknowns, most_iterations, nullptr, model.prior_weight);
+  if (!(cost(all) < cost(model))) return model;
+  if (all.blocks.empty()) fit.linearise(all);
+  return all;
 }
 
 }  // namespace pmg::effects

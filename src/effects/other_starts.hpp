@@ -17,4 +17,8 @@ namespace pmg::effects {
 NestedModel from_other_starts(const NestedFit& fit, NestedModel model, const std::vector<std::string>& parameters,
                               int most_iterations);
 
+/// The same for periods of holds, on a few runs; fitted to all of them where one is lower there.
+NestedModel from_other_periods(const NestedFit& fit, const NestedModel& model, const std::vector<std::string>& periods,
+                               int most_iterations);
+
 }  // namespace pmg::effects

@@ -17,8 +17,7 @@ fitting::Residuals at(const NestedFit& fit, calib::JointModel model, const std::
   return fit.residuals(model);
 }
 
-constexpr std::size_t kRunsForPeriods = 6;  // some hundred periods are tried on so many runs
-constexpr double kFirstPeriods = 16.0;      // of a beginning's length
+constexpr double kFirstPeriods = 16.0;  // of a beginning's length
 /// From one to the next of the first grid, at the end of a beginning. The right period is at most half of it off, and
 /// must explain more than a wrong one that is in step where the commands jump.
 constexpr double kOutOfStep_periods = 0.15;
@@ -162,7 +161,9 @@ PeriodRange period_range(const NestedFit& fit, const NestedModel& model, const s
                          double noise_squares, double deviations) {
   const double period_s = calib::value(model.model, parameter);
   const fitting::BlockComparison compare(fit.blocks(), {}, noise_squares);
-  const Eigen::VectorXd here = fit.blocks().squares(fit.residuals(model.model));
+  const fitting::Residuals residuals = fit.residuals(model.model);
+  const Eigen::VectorXd here = fit.blocks().squares(residuals);
+  const RolloutJacobian known = fit.jacobian(model, residuals);
   const auto worse = [&](const fitting::Residuals& there) {
     return there.empty() || compare(fit.blocks().squares(there), here).deviations > deviations;
   };
@@ -171,7 +172,7 @@ PeriodRange period_range(const NestedFit& fit, const NestedModel& model, const s
     for (const double share : {0.01, 0.02, 0.04, 0.08, 0.15, 0.25, 0.35, 0.5}) {
       tried_s = period_s * (1.0 + side * share);
       if (worse(at(fit, model.model, parameter, tried_s)) &&
-          worse(fit.residuals(fit.beside(model, parameter, tried_s).model)))
+          worse(fit.residuals(fit.beside(model, parameter, tried_s, &known).model)))
         break;
     }
     return tried_s;

@@ -8,6 +8,8 @@
 
 namespace pmg::effects {
 
+constexpr std::size_t kRunsForPeriods = 6;  ///< some hundred periods are tried on so many runs
+
 /// True for a period that is searched: of a drive's output, of its commands, of its readings.
 bool is_period(const std::string& parameter);
 
@@ -29,7 +31,7 @@ struct PeriodRange {
 
 /// (fitted model with a period) => (the nearest periods to both sides, on a grid of a percent to a half, at which the
 /// runs are explained worse by so many standard deviations over blocks, also where the other unknowns are fitted beside
-/// them). Costs up to sixteen fits of four iterations.
+/// them, with the model's Jacobian). Costs that and up to sixteen fits of four iterations.
 PeriodRange period_range(const NestedFit& fit, const NestedModel& model, const std::string& parameter,
                          double noise_squares, double deviations);
 

@@ -1,7 +1,9 @@
 // The sensor, and what repeats with the joint's angle.
 #include <algorithm>
 
+#include "calib/unknown.hpp"
 #include "effects/families.hpp"
+#include "effects/zero_slip.hpp"
 
 namespace pmg::effects {
 
@@ -22,6 +24,8 @@ Values waves(const StartsFrom& from, double amplitude, double periods, double hi
 Values waves_of_torque(const StartsFrom& from) { return waves(from, 0.1 * from.scale.torque_Nm, 0.25, 64.0); }
 Values waves_of_share(const StartsFrom& from) { return waves(from, 0.2, 0.5, 32.0); }
 Values waves_of_angle(const StartsFrom& from) { return waves(from, 0.005, 0.5, 32.0); }
+
+bool may_slip(const StartsFrom& from) { return from.scale.recordings >= 2 * kFewestBesideSlip; }
 
 }  // namespace
 
@@ -51,13 +55,17 @@ std::vector<Effect> sensor_effects() {
        .demonstration = {.command = shown::slow_sine}},
       {.name = "zero_offset",
        .title = "zero offset",
-       .forms = {law("constant", "", {"sensor.zero_offset_rad"}, "Mooring, Roth, Driels 1991",
-                     each({-0.05, -0.01, 0.01, 0.05}))},
+       .forms = {law("constant", "always the same", {"sensor.zero_offset_rad"}, "Mooring, Roth, Driels 1991",
+                     each({-0.05, -0.01, 0.01, 0.05})),
+                 law("slips", "that slipped between two recordings",
+                     {calib::kZeroSlip, "sensor.zero_offset_rad", calib::kZeroSlipAt}, "Mooring, Roth, Driels 1991",
+                     where(may_slip, these({{0.03, 0.0, 0.0}})))},
        .shows = "misses by a constant where gravity differs",
        .needs = "a load that hangs",
        .workshop = {"a wrong zero of the position sensor",
                     "Put the joint on its mark and compare the reading with the angle. Set the zero again.",
                     "Whatever uses this angle is wrong by it: a foot stands tilted, or the robot leans."},
+       .shapes = {calib::kZeroSlipAt},
        .strength = opposite},
       {.name = "cogging",
        .title = "cogging",

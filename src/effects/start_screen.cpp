@@ -10,6 +10,7 @@
 #include "calib/joint_runs.hpp"
 #include "calib/unknown.hpp"
 #include "effects/period.hpp"
+#include "effects/zero_slip.hpp"
 #include "fitting/covariance.hpp"
 
 namespace pmg::effects {
@@ -17,7 +18,9 @@ namespace pmg::effects {
 namespace {
 
 constexpr std::size_t kMostStarts = 4;
-constexpr std::size_t kRunsForOrders = 5;  // a hundred orders of a wave are screened on so many runs first
+constexpr double kMayBeWorth = 1.0 / 3.0;   // of a form's worth: a start that is off may explain so little
+constexpr std::size_t kRunsForOrders = 5;   // a hundred orders of a wave are screened on so many runs first
+constexpr std::size_t kRunsForAThird = 16;  // with more, a third start costs more than it finds
 
 bool better(const ScreenedStart& a, const ScreenedStart& b) { return a.squares < b.squares; }
 
@@ -159,6 +162,34 @@ void StartScreen::screen_waves(const Form& form, const std::vector<double>& valu
   if (std::isfinite(start.squares)) into.push_back(start);
 }
 
+/// A zero before each place, and another one after it: on both sides the response to an offset is linear. One rollout
+/// shows all places.
+void StartScreen::screen_slips(const Form& form, const std::vector<double>& values,
+                               std::vector<ScreenedStart>& into) const {
+  constexpr double kMost = 10.0;  // of the offset that is rolled out
+  const std::vector<calib::SingleJoint>& runs = fit_.runs();
+  const double zero_rad = calib::value(current_.model, form.parameters[1]);
+  fitting::Residuals there = fit_.residuals(with(form, {values[0], zero_rad, values[2]}));
+  if (there.empty()) return;
+  for (std::size_t r = 0; r < there.size(); ++r) there[r] -= residuals_[r];
+  for (const double place : slip_places(runs)) {
+    const auto is_after = [&](std::size_t r) { return runs[r].run().place < place ? 0U : 1U; };
+    double along[2] = {}, across[2] = {};  // before and after
+    for (std::size_t r = 0; r < there.size(); ++r) {
+      along[is_after(r)] -= there[r].dot(residuals_[r]);
+      across[is_after(r)] += there[r].squaredNorm();
+    }
+    if (!(across[0] > 0.0 && across[1] > 0.0)) continue;
+    const double share[2] = {std::clamp(along[0] / across[0], -kMost, kMost),
+                             std::clamp(along[1] / across[1], -kMost, kMost)};
+    fitting::Residuals moved = residuals_;
+    for (std::size_t r = 0; r < there.size(); ++r) moved[r] += share[is_after(r)] * there[r];
+    ScreenedStart start{with(form, {(share[1] - share[0]) * values[0], zero_rad + share[0] * values[0], place}), 0.0};
+    refit_linearly(moved, form, start);
+    if (std::isfinite(start.squares)) into.push_back(start);
+  }
+}
+
 /// Rollouts with a period that is off by a percent soon are out of step with the recording. So between the first and
 /// the last of the grid's periods those that stay in step are screened too.
 void StartScreen::screen_periods(const Effect& effect, const Form& form, const std::vector<std::vector<double>>& grid,
@@ -179,19 +210,29 @@ std::vector<ScreenedStart> StartScreen::at(const Effect& effect, std::size_t for
   return {start};
 }
 
+struct StartScreen::OfFewRuns {
+  OfFewRuns(const StartScreen& all, std::size_t count)
+      : fit(calib::spread(all.fit_.runs(), count), all.fit_.threads()), screen(fit, all.current_) {}
+  NestedFit fit;
+  StartScreen screen;
+};
+
+std::vector<double> StartScreen::values_of(const ScreenedStart& start, const Form& form) {
+  std::vector<double> values;
+  for (const std::string& parameter : form.parameters) values.push_back(calib::value(start.model, parameter));
+  return values;
+}
+
 /// Start values of a wave of some order. With many runs only those that are best on a few of them: there are about a
 /// hundred orders, and each costs two rollouts of every run.
 std::vector<std::vector<double>> StartScreen::promising_waves(const Effect& effect, std::size_t form_index,
                                                               const BenchScale& scale) const {
   const Form& form = effect.forms.at(form_index);
   if (fit_.runs().size() <= kRunsForOrders) return form.starts_at(current_.model, scale);
-  const NestedFit few(calib::spread(fit_.runs(), kRunsForOrders), fit_.threads());
+  if (for_orders_ == nullptr) for_orders_ = std::make_shared<OfFewRuns>(*this, kRunsForOrders);
   std::vector<std::vector<double>> found;
-  for (const ScreenedStart& start : StartScreen(few, current_).best(effect, form_index, scale)) {
-    std::vector<double> values;
-    for (const std::string& parameter : form.parameters) values.push_back(calib::value(start.model, parameter));
-    found.push_back(std::move(values));
-  }
+  for (const ScreenedStart& start : for_orders_->screen.best(effect, form_index, scale))
+    found.push_back(values_of(start, form));
   return found;
 }
 
@@ -205,6 +246,8 @@ std::vector<ScreenedStart> StartScreen::best(const Effect& effect, std::size_t f
   for (const std::vector<double>& values : grid) {
     if (waves)
       screen_waves(form, values, found);
+    else if (is_place(form.parameters.back()))
+      screen_slips(form, values, found);
     else
       screen(effect, form, values, found);
   }
@@ -227,7 +270,11 @@ std::vector<ScreenedStart> StartScreen::best_of_forms(const Effect& effect, cons
   const double now = fitting::sum_of_squares(residuals_);
   const auto other =
       std::find_if(all.begin(), all.end(), [&](const ScreenedStart& s) { return s.form != all[0].form; });
-  if (other != all.end() && now - other->squares > worth * (now - all[0].squares)) return {all[0], *other};
+  const auto other_explains = [&](double share) {
+    return other != all.end() && now - other->squares > share * (now - all[0].squares);
+  };
+  if (other_explains(worth)) return {all[0], *other};
+  if (fit_.runs().size() <= kRunsForAThird && other_explains(kMayBeWorth * worth)) return {all[0], all[1], *other};
   return {all[0], all[1]};
 }
 

@@ -1,6 +1,7 @@
 // A cheap screen of start values of an effect's forms: rollouts with the effect, the other unknowns refitted linearly.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "effects/catalogue.hpp"
@@ -24,8 +25,9 @@ class StartScreen {
   /// every run for each start value, two for each wave.
   std::vector<ScreenedStart> best(const Effect& effect, std::size_t form, const BenchScale& scale) const;
 
-  /// (effect) => (its two starts to fit): the best of all forms, and the best of another form if that explains at least
-  /// this share of what the first one explains; else the second best.
+  /// (effect) => (its starts to fit): the best of all forms, and the best of another form if that explains at least
+  /// this share of what the first one explains; else the second best, and the other form's from a third of the share
+  /// on.
   std::vector<ScreenedStart> best_of_forms(const Effect& effect, const BenchScale& scale, double worth) const;
 
   /// (effect, form, values of its parameters) => (the start with these values; none if it can't be simulated).
@@ -39,11 +41,14 @@ class StartScreen {
   const NestedFit& fit() const { return fit_; }
 
  private:
+  struct OfFewRuns;
   void screen(const Effect& effect, const Form& form, const std::vector<double>& values,
               std::vector<ScreenedStart>& into) const;
   void line_search(const Form& form, const std::vector<double>& values, const fitting::Residuals& there,
                    std::vector<ScreenedStart>& into) const;
+  void screen_slips(const Form& form, const std::vector<double>& values, std::vector<ScreenedStart>& into) const;
   void screen_waves(const Form& form, const std::vector<double>& values, std::vector<ScreenedStart>& into) const;
+  static std::vector<double> values_of(const ScreenedStart& start, const Form& form);
   std::vector<std::vector<double>> promising_waves(const Effect& effect, std::size_t form,
                                                    const BenchScale& scale) const;
   void refit_linearly(const fitting::Residuals& residuals, const Form& form, ScreenedStart& start) const;
@@ -56,6 +61,7 @@ class StartScreen {
   fitting::Residuals residuals_;
   RolloutJacobian jacobian_;
   Eigen::MatrixXd information_;
+  mutable std::shared_ptr<const OfFewRuns> for_orders_;
 };
 
 }  // namespace pmg::effects

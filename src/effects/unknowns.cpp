@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "effects/period.hpp"
+#include "effects/zero_slip.hpp"
 #include "fitting/statistics.hpp"
 
 namespace pmg::effects {
@@ -56,6 +57,7 @@ double lowest_order(const BenchScale& scale) {
 BenchScale scale_of(const bench::Bench& bench, const std::vector<calib::SingleJoint>& runs, const JointModel& model) {
   BenchScale scale;
   scale.law = bench.law;
+  scale.recordings = runs.size();
   std::vector<double> torques, speeds, inertias, positions;
   constexpr double kSpan_s = 0.02;
   for (const calib::SingleJoint& joint : runs) {
@@ -85,6 +87,8 @@ BenchScale scale_of(const bench::Bench& bench, const std::vector<calib::SingleJo
   if (bench.law == bench::DriveLaw::kServoVoltage) scale.output /= bench.supply_V;
   scale.speed_rad_s = std::max(1e-4, fitting::quantile(speeds, 0.98));
   scale.inertia_kg_m2 = std::max(1e-7, fitting::quantile(inertias, 0.5));
+  const auto [least, most] = std::minmax_element(inertias.begin(), inertias.end());
+  scale.several_loads = !inertias.empty() && *most > 1.05 * *least;
   scale.position_low_rad = fitting::quantile(positions, 0.01);
   scale.position_high_rad = fitting::quantile(positions, 0.99);
   scale.quantum_rad = quantum_of(runs);
@@ -144,10 +148,11 @@ calib::Unknown unknown(const std::string& name, const bench::Bench& bench, const
   u.typical = here.typical;
   u.lower = std::min(u.lower, here.lowest);
   if (u.upper > 0.0) u.upper = std::max(u.upper, here.highest);
-  // A source three times as weak as the motor it feeds.
-  if (u.quantity == Quantity::kPerTorque) u.upper = 3.0 / scale.torque_peak_Nm;
+  // A source ten times as weak as the motor it feeds.
+  if (u.quantity == Quantity::kPerTorque) u.upper = 10.0 / scale.torque_peak_Nm;
   constexpr double kFastSource_s = 0.01;  // quicker than a joint moves: a resistance
   if (name == "drive.supply_sag_time_s") u.lower = kFastSource_s;
+  if (name == calib::kMoreInertia) u.typical = scale.inertia_kg_m2, u.upper = 5.0 * scale.inertia_kg_m2;
   if (name == "transmission.armature_kg_m2") u.lower = std::min(u.lower, 1e-4 * scale.inertia_kg_m2);
   // No scale from zero: most of these numbers are small beside their range, and their priors are normal.
   const bool logarithmic =
@@ -162,7 +167,7 @@ calib::Unknown unknown(const std::string& name, const bench::Bench& bench, const
 bool is_order(const std::string& parameter) { return calib::quantity(parameter) == Quantity::kOrder; }
 
 bool is_jagged(const std::string& parameter) {
-  return is_period(parameter) || calib::quantity(parameter) == Quantity::kQuantum;
+  return is_period(parameter) || is_place(parameter) || calib::quantity(parameter) == Quantity::kQuantum;
 }
 
 }  // namespace pmg::effects

@@ -20,7 +20,9 @@ struct BenchScale {
   double output = 1.0;                                     ///< torque_Nm in the unit of the drive's output
   double duration_s = 1.0;                                 ///< of the longest run
   bool bus_recorded = false, temperature_recorded = false;
-  bool switches_off = false;  ///< the drive is off in some samples
+  bool switches_off = false;   ///< the drive is off in some samples
+  std::size_t recordings = 1;  ///< that are fitted
+  bool several_loads = false;  ///< of different inertias
   bench::DriveLaw law = bench::DriveLaw::kPositionPd;
 };
 
@@ -46,7 +48,7 @@ double lowest_order(const BenchScale& scale);
 bool is_order(const std::string& parameter);
 
 /// True for parameters that a fit keeps at their start value, because rollouts are not smooth in them: the period of a
-/// sample-and-hold and a sensor's quantum.
+/// sample-and-hold, a sensor's quantum, and between which recordings its zero slipped.
 bool is_jagged(const std::string& parameter);
 
 }  // namespace pmg::effects

@@ -1,4 +1,5 @@
 // What changes as a joint works, and what it carries.
+#include "calib/unknown.hpp"
 #include "effects/families.hpp"
 
 namespace pmg::effects {
@@ -11,8 +12,11 @@ bool warms_its_winding(const StartsFrom& from) {
   return knows_temperature(from) && from.scale.law == bench::DriveLaw::kServoVoltage;
 }
 
-double by_itself(const StartsFrom&) { return 1.0; }
 double of_a_run(const StartsFrom& from) { return from.scale.duration_s; }
+
+bool several_loads(const StartsFrom& from) { return from.scale.several_loads; }
+double usual_inertia(const StartsFrom& from) { return from.scale.inertia_kg_m2; }
+double usual_torque(const StartsFrom& from) { return from.scale.torque_Nm; }
 
 Values winding_heats(const StartsFrom& from) {
   const double torque = from.scale.torque_Nm, duration = from.scale.duration_s;
@@ -62,8 +66,12 @@ std::vector<Effect> warmth_and_load_effects() {
        .demonstration = {.command = shown::sine, .both = {{"friction.coulomb_Nm", 0.3}}}},
       {.name = "load",
        .title = "mass, centre of mass or inertia",
-       .forms = {law("scales", "", {"load.inertia_scale", "load.gravity_scale"}, "Atkeson, An, Hollerbach 1986",
-                     these({{0.8, 0.8}, {1.25, 1.25}, {1.2, 1.0}, {0.8, 1.0}, {1.0, 1.2}, {1.0, 0.8}}))},
+       .forms = {law("scales", "in proportion to what is written", {"load.inertia_scale", "load.gravity_scale"},
+                     "Atkeson, An, Hollerbach 1986",
+                     these({{0.8, 0.8}, {1.25, 1.25}, {1.2, 1.0}, {0.8, 1.0}, {1.0, 1.2}, {1.0, 0.8}})),
+                 law("adds", "of something that turns with every load", {calib::kMoreInertia, calib::kMoreGravity},
+                     "Armstrong, Khatib, Burdick 1986",
+                     where(several_loads, grid({{0.3}, {0.0, 0.2, -0.2}}, {usual_inertia, usual_torque})))},
        .shows = "swings too slowly or too fast; sags more or less than the load says",
        .needs = "steps, and poses away from hanging",
        .workshop =

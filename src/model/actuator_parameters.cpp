@@ -31,6 +31,7 @@ constexpr std::array kQuantities = {
     QuantityRow{kAngle, "rad"},
     QuantityRow{kPhase, "rad"},
     QuantityRow{kQuantum, "rad"},
+    QuantityRow{kPlace, ""},
     QuantityRow{kSpeed, "rad/s"},
     QuantityRow{kAcceleration, "rad/s^2"},
     QuantityRow{kTorque, "Nm", 100.0, true},

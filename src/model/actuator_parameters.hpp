@@ -174,6 +174,7 @@ enum class Quantity {
   kAngle,
   kPhase,    ///< of a wave over a turn
   kQuantum,  ///< of a sensor
+  kPlace,    ///< of a recording among all: 0 to 1
   kSpeed,
   kAcceleration,
   kTorque,

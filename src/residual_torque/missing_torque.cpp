@@ -39,15 +39,17 @@ class PulledJoint {
  public:
   PulledJoint(const bench::Bench& bench, const calib::SingleJoint& joint, const calib::JointModel& model,
               const effects::BenchScale& scale)
-      : joint_(joint), model_(model), scale_(scale), moved_(evidence::motion(bench, joint.run(), kWindow_s)) {
+      : joint_(joint),
+        model_(joint.of_run(model)),
+        scale_(scale),
+        moved_(evidence::motion(bench, joint.run(), kWindow_s)) {
     model_.actuator.residual_torque = {.count = 1,
                                        .terms = {}};  // a term without influence: its quantities are followed
     const model::ActuatorParameters::Drive& drive = model_.actuator.drive;
     const double unit_Nm = drive.torque_per_unit_Nm * joint.input(0).supply;
     kp_Nm_per_rad_ = unit_Nm * drive.kp_scale * joint.run().kp;
     kd_Nm_s_per_rad_ = unit_Nm * drive.kd_scale * joint.run().kd;
-    inertia_kg_m2_ =
-        joint.run().load.inertia_kg_m2 * model_.inertia_scale + model_.actuator.transmission.armature_kg_m2;
+    inertia_kg_m2_ = joint.load(model_).inertia_kg_m2 + model_.actuator.transmission.armature_kg_m2;
     pull_rad_s_ = std::clamp(kFasterThanDrive * std::sqrt(kp_Nm_per_rad_ / inertia_kg_m2_), kSlowest_rad_s,
                              kLargestStep / joint.step_s());
   }
@@ -59,7 +61,7 @@ class PulledJoint {
     std::vector<double> apart_rad(r.t_s.size(), 0.0), pull_Nm(r.t_s.size(), 0.0), steps(r.t_s.size(), 0.0);
     std::vector<double> speed_rad_s(rows, 0.0);
     sim::ActuatorModel actuator(model_.actuator, joint_.step_s());
-    const double inertia = joint_.run().load.inertia_kg_m2 * model_.inertia_scale + actuator.joint_armature_kg_m2();
+    const double inertia = joint_.load(model_).inertia_kg_m2 + actuator.joint_armature_kg_m2();
     const calib::SingleJoint::Start start = joint_.start(model_);
     double q_rad = start.q_rad, dq_rad_s = 0.0;
     actuator.reset_at_rest(told(0), q_rad, start.load_Nm, start.slack_rad);
@@ -120,8 +122,8 @@ class PulledJoint {
   }
 
   double gravity_Nm(double q_rad) const {
-    const bench::JointLoad& load = joint_.run().load;
-    return load.gravity_Nm * model_.gravity_scale * std::sin(q_rad - load.hangs_at_rad);
+    const bench::JointLoad load = joint_.load(model_);
+    return load.gravity_Nm * std::sin(q_rad - load.hangs_at_rad);
   }
 
   Target target_at(std::size_t sample, double t_s) const {

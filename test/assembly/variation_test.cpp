@@ -273,7 +273,7 @@ TEST(Variation, DifferencesGoToTheRunsOfTheirLevel) {
   const double noise = 16.0 * 300.0 * 1e-6;  // 16 runs of 300 samples with 1 mrad
   EXPECT_GT(before, 2.0 * noise);
   EXPECT_LT(after, 1.05 * noise);
-  const double offset_rad = runs[0].of_assembly(found.fitted.model).actuator.sensor.zero_offset_rad;
+  const double offset_rad = runs[0].of_run(found.fitted.model).actuator.sensor.zero_offset_rad;
   EXPECT_NEAR(offset_rad, 0.02, 2e-3);
 }
 

@@ -60,6 +60,7 @@ inline std::vector<calib::SingleJoint> record(const bench::Bench& bench, const c
     bench::BenchRun run;
     run.file = fmt::format("run{}.csv", number);
     run.trajectory = fmt::format("excitation{}", number);
+    run.place = (number + 0.5) / count;
     run.kp = number % 2 == 0 ? 20.0 : 40.0;
     run.kd = number < 2 ? 0.8 : 1.6;  // of one kd alone nothing tells it from viscous friction
     run.load = {0.02 + 0.01 * number, pendulum ? 1.0 + 0.5 * number : 0.0, 0.0};

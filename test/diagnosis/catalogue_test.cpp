@@ -105,7 +105,7 @@ TEST(Catalogue, WordsForPeopleNameTheFormAndThoseThatAreLeftOpen) {
   EXPECT_EQ(effects::described("viscous", "quadratic", {}), "viscous friction, growing with the square of speed");
   EXPECT_EQ(effects::described("viscous", "quadratic", {"linear"}),
             "viscous friction, growing with the square of speed (not told from: growing in proportion to speed)");
-  EXPECT_EQ(effects::described("zero_offset", "constant", {}), "zero offset") << "the only form has no words";
+  EXPECT_EQ(effects::described("quantisation", "rounds", {}), "quantisation") << "the only form has no words";
 }
 
 }  // namespace

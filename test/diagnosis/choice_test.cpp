@@ -136,6 +136,16 @@ TEST_F(Judged, WhatExplainsNearlyAllOfTheRestMayBeSmallBesideTheBeginning) {
   EXPECT_EQ(at.objection(trial), "");
   trial.missed_alone = false;
   EXPECT_NE(at.objection(trial), "") << "a verdict forgives what is left without it";
+  trial.share_of_rest = 0.97;
+  EXPECT_NE(at.objection(trial), "") << "other effects may mend as much";
+  trial.clearly_best = true;
+  EXPECT_EQ(at.objection(trial), "");
+  trial.share_of_rest = 0.9;
+  EXPECT_NE(at.objection(trial), "") << "what mends a form leaves a rest";
+  trial.share_of_rest = 0.97;
+  trial.comparison.deviations = 5.0;
+  EXPECT_NE(at.objection(trial), "") << "not sure enough";
+  trial.comparison.deviations = 100.0;
   trial.missed_alone = true;
   trial.share_of_rest = 0.5;
   EXPECT_NE(at.objection(trial), "");
@@ -199,7 +209,13 @@ TEST_F(Judged, TwoNamesOfOneTorqueAreNotBothTaken) {
                            effects::unknown("ripple.offset_Nm", bench_, at.base_model().scale)},
                           0);
   fit_->linearise(both.fitted);
-  EXPECT_NE(at.objection(convincing("offset", both)).find("by another name"), std::string::npos);
+  Trial trial = convincing("offset", both);
+  trial.share_of_rest = 0.7;
+  EXPECT_NE(at.objection(trial).find("by another name"), std::string::npos);
+  trial.share_of_rest = 0.9;
+  EXPECT_EQ(at.objection(trial).find("by another name"), std::string::npos) << "friction alone leaves it";
+  trial.missed_alone = false;
+  EXPECT_NE(at.objection(trial).find("by another name"), std::string::npos) << "a verdict forgives what it leaves";
 }
 
 TEST_F(Judged, AStribeckTermOfTheOtherSignMustBeClearlyBetterThanAllOthers) {

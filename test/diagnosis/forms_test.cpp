@@ -36,8 +36,9 @@ struct Joint {
       model.actuator.drive.limit = 1.0;
       model.actuator.drive.torque_per_unit_Nm = 0.25;
       model.actuator.drive.back_emf_s_per_rad = 2.0;
+      model.actuator.friction.viscous_Nm_s_per_rad = 0.0;  // the back-EMF brakes as much
     }
-    for (const calib::SingleJoint& joint : test::record(bench, model, 3)) {
+    for (const calib::SingleJoint& joint : test::record(bench, model, 4)) {
       bench::BenchRun run = joint.run();
       if (law == bench::DriveLaw::kServoVoltage) run.kp = 8.0;
       run.recording.temp_C.assign(run.recording.t_s.size(), 40.0);
@@ -182,7 +183,10 @@ class FormsOfABench : public testing::Test {
                       const JointDiagnosisOptions& decide_by = {}) {
     calib::JointModel truth = dry_joint();
     hide(truth.actuator);
-    test::write_bench(folder_, test::record(test::pd_bench(true), truth, 6, noise_rad));
+    return diagnosed_from(test::record(test::pd_bench(true), truth, 6, noise_rad), decide_by);
+  }
+  Diagnosis diagnosed_from(const std::vector<calib::SingleJoint>& runs, const JointDiagnosisOptions& decide_by = {}) {
+    test::write_bench(folder_, runs);
     DiagnoseOptions options;
     options.model = dry_joint().actuator;
     options.decide_by = decide_by;
@@ -268,6 +272,43 @@ TEST_F(FormsOfABench, ABeltIsAComplianceThatGivesWayOtherwiseOnTheWayBack) {
   expect_in_its_interval(cause, "transmission.stiffness_Nm_per_rad", 150.0);
   expect_in_its_interval(cause, "transmission.hysteretic_share", 0.6);
   expect_in_its_interval(cause, "transmission.hysteresis_rad", 0.015);
+}
+
+/// An arm or a pulley adds the same to every load; a scale adds more to a larger one.
+TEST_F(FormsOfABench, WhatTurnsWithEveryLoadIsTheLoadInThatForm) {
+  calib::JointModel truth = dry_joint();
+  truth.more_inertia_kg_m2 = 0.03;
+  truth.more_gravity_Nm = 0.8;
+  const Diagnosis found = diagnosed_from(test::record(test::pd_bench(true), truth, 6, 2e-4));
+  ASSERT_EQ(found.causes.size(), 1U);
+  const Cause& cause = found.causes.front();
+  EXPECT_EQ(cause.effect, "load");
+  EXPECT_EQ(cause.form, "adds");
+  expect_in_its_interval(cause, calib::kMoreInertia, truth.more_inertia_kg_m2);
+  expect_in_its_interval(cause, calib::kMoreGravity, truth.more_gravity_Nm);
+}
+
+TEST_F(FormsOfABench, AZeroThatSlippedIsNamedWithTheRecordingsBetweenWhichItDid) {
+  calib::JointModel truth = dry_joint();
+  truth.zero_slip_rad = -0.04;
+  truth.zero_slip_at = 0.5;
+  std::vector<calib::SingleJoint> runs;
+  for (const calib::SingleJoint& joint : test::record(test::pd_bench(true), truth, 6, 2e-4)) {
+    bench::BenchRun run = joint.run();
+    run.trajectory = "any";  // not one for each: then before and after the slip are two motions
+    runs.emplace_back(test::pd_bench(true), run, joint.step_s());
+  }
+  const Diagnosis found = diagnosed_from(runs);
+  EXPECT_EQ(found.verdict, evidence::Verdict::kFound);
+  ASSERT_EQ(found.causes.size(), 1U);
+  const Cause& cause = found.causes.front();
+  EXPECT_EQ(cause.effect, "zero_offset");
+  EXPECT_EQ(cause.form, "slips");
+  expect_in_its_interval(cause, calib::kZeroSlip, truth.zero_slip_rad);
+  expect_in_its_interval(cause, calib::kZeroSlipAt, truth.zero_slip_at);
+  EXPECT_TRUE(std::ranges::any_of(cause.evidence, [](const std::string& sentence) {
+    return sentence.find("after run2.csv and before run3.csv") != std::string::npos;
+  }));
 }
 
 /// A drive that pushes to one side lets go where it is switched off; a spring doesn't.

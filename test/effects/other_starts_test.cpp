@@ -54,6 +54,23 @@ TEST(OtherStarts, FindThePeriodOfAHold) {
   EXPECT_NEAR(best.model.actuator.command.update_s, 0.067, 0.0005);
 }
 
+/// Ten runs, of which a few are looked at; a damping makes up for half of the period.
+TEST(OtherStarts, FindAPeriodOnAFewRunsForAllOfThem) {
+  calib::JointModel truth = joint_with(0.0, 0.0);
+  truth.actuator.sensor.hold_s = 0.018;
+  const NestedFit fit(test::record(test::pd_bench(true), truth, 10, 1e-4), 1);
+  calib::JointModel start = joint_with(0.0, 0.0);
+  start.actuator.sensor.hold_s = 0.008;
+  const NestedModel shorter = fit.fit(start, unknowns(fit, {"drive.kd_scale"}), kIterations);
+  ASSERT_LT(shorter.model.actuator.drive.kd_scale, 0.93);
+  const NestedModel best = from_other_periods(fit, shorter, {"sensor.hold_s"}, kIterations);
+  EXPECT_NEAR(best.model.actuator.sensor.hold_s, 0.018, 0.002) << "a step of the simulation";
+  EXPECT_NEAR(best.model.actuator.drive.kd_scale, 1.0, 0.05);
+  EXPECT_LT(best.squares, 0.05 * shorter.squares);
+  EXPECT_FALSE(best.blocks.empty()) << "it is linearised, on all runs";
+  EXPECT_EQ(from_other_periods(fit, shorter, {}, kIterations).coordinates, shorter.coordinates);
+}
+
 TEST(OtherStarts, LeaveTheBestFitAsItIs) {
   const NestedFit fit = recorded(joint_with(0.0, 9.0));
   const std::vector<std::string> parameters = {"ripple.amplitude_Nm", "ripple.order", "ripple.phase_rad"};
