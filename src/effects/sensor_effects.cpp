@@ -62,9 +62,11 @@ std::vector<Effect> sensor_effects() {
                      where(may_slip, these({{0.03, 0.0, 0.0}})))},
        .shows = "misses by a constant where gravity differs",
        .needs = "a load that hangs",
-       .workshop = {"a wrong zero of the position sensor",
-                    "Put the joint on its mark and compare the reading with the angle. Set the zero again.",
-                    "Whatever uses this angle is wrong by it: a foot stands tilted, or the robot leans."},
+       .workshop =
+           {"a wrong zero of the position sensor",
+            "Put the joint on its mark and compare the reading with the angle. If it slipped, check that magnet, "
+            "coupling and arm sit firmly on the shaft. Set the zero again.",
+            "Whatever uses this angle is wrong by it: a foot stands tilted, or the robot leans."},
        .shapes = {calib::kZeroSlipAt},
        .strength = opposite},
       {.name = "cogging",
