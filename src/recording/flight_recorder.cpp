@@ -92,6 +92,11 @@ void FlightRecorder::note_fault(const control::TickRecord& record) {
   incident.record = record;
   incident.mode_before = mode_before;
   incident.utc_ns = utc_now_ns() - (clock_.now_ns() - record.now_ns);
+  // Files sort by it, and the oldest are removed: of two in one millisecond the later one is the newer.
+  constexpr std::int64_t kMillisecond_ns = 1'000'000, kSecond_ns = 1'000'000'000;
+  const std::int64_t next_ns = (last_utc_ns_ / kMillisecond_ns + 1) * kMillisecond_ns;
+  if (incident.utc_ns < next_ns && next_ns - incident.utc_ns < kSecond_ns) incident.utc_ns = next_ns;
+  last_utc_ns_ = incident.utc_ns;
   waiting_.push_back(std::move(incident));
 }
 
@@ -204,7 +209,7 @@ fs::path FlightRecorder::stem(const Incident& incident, const fs::path& folder) 
   const std::string name =
       fmt::format("fault-{}Z-{}", utc(incident.utc_ns, "%Y%m%dT%H%M%S"), to_string(incident.record.result.fault.code));
   fs::path stem = folder / name;
-  // Faults of one millisecond, or a computer whose clock was set back.
+  // A computer whose clock was set back.
   for (int again = 2; fs::exists(stem.string() + ".lcm"); ++again) stem = folder / fmt::format("{}-{}", name, again);
   return stem;
 }

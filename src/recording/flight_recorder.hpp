@@ -85,6 +85,7 @@ class FlightRecorder {
   faults::Fault last_fault_;
   control::Mode last_mode_ = control::Mode::kPassive;
   std::vector<Incident> waiting_;
+  std::int64_t last_utc_ns_ = 0;  // of the newest incident
   int written_ = 0, lost_ = 0;
 };
 
