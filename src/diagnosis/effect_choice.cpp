@@ -88,9 +88,12 @@ Extension EffectSearch::pruned(Extension current, const Extension& before) {
     const double regained = before.fitted.squares - rest.fitted.squares;
     const bool unfinished = regained > options_.regained_share * (before.fitted.squares - current.fitted.squares);
     const bool judged = measured(name) == nullptr && (!newest || unfinished);
-    Trial again = trial(rest, current, name);
-    again.clearly_best = true;  // it was chosen in a round of its own
-    if (!judged || objection(again).empty()) {
+    const auto stands = [&] {
+      Trial again = trial(rest, current, name);
+      again.clearly_best = true;  // it was chosen in a round of its own
+      return objection(again).empty();
+    };
+    if (!judged || stands()) {
       ++e;
     } else {
       current = rest;
@@ -236,14 +239,16 @@ Extension EffectSearch::with_constant(const calib::Unknown& constant, const std:
   return found;
 }
 
-/// (extension, where to begin) => (a first fit with this constant of the model free, too; its folds are foretold).
-Extension EffectSearch::begun_with_constant(const calib::Unknown& constant, const Extension& of,
-                                            const calib::JointModel& start) {
+/// (extension) => (a first fit with this constant of the model free, too; its folds are foretold).
+Extension EffectSearch::begun_with_constant(const calib::Unknown& constant, const Extension& of) {
   const effects::RolloutJacobian& known = look_at(of).screen.jacobian();
   calib::Unknowns unknowns = of.fitted.unknowns;
   calib::put(unknowns, constant);
-  Extension found{
-      of.effects, fit_.fit(start, unknowns, static_cast<int>(options_.few_iterations), &known), {}, of.forms, {}};
+  Extension found{of.effects,
+                  fit_.fit(of.fitted.model, unknowns, static_cast<int>(options_.few_iterations), &known),
+                  {},
+                  of.forms,
+                  {}};
   if (found.fitted.blocks.empty()) fit_.linearise(found.fitted, &known);
   found.held_out = fitting::foretold_held_out_squares(found.fitted, compare_.folds());
   return found;
@@ -268,9 +273,7 @@ std::string EffectSearch::made_of_constant(const Extension& chosen, const Extens
   for (const calib::Unknown& constant : calib::Unknowns(base_.constants)) {
     if (!going(fmt::format("trying {} in its place", constant.name))) return "";
     const double gain = without.fitted.squares - chosen.fitted.squares;
-    if (without.fitted.squares - begun_with_constant(constant, without, without.fitted.model).fitted.squares <
-        kHopeless * gain)
-      continue;
+    if (without.fitted.squares - begun_with_constant(constant, without).fitted.squares < kHopeless * gain) continue;
     const Extension other = with_constant(constant, without.effects, without.forms, start);
     if (compared(without, other).deviations < options_.least_deviations ||
         compared(other, chosen).deviations >= options_.least_deviations)
@@ -288,7 +291,7 @@ std::string EffectSearch::made_of_constant(const Extension& chosen, const Extens
 std::optional<Extension> EffectSearch::with_a_constant_that_shows(const Extension& chosen) {
   for (const calib::Unknown& constant : calib::Unknowns(base_.constants)) {
     if (!going(fmt::format("trying {} beside the effects", constant.name))) return std::nullopt;
-    const Extension begun = begun_with_constant(constant, chosen, chosen.fitted.model);
+    const Extension begun = begun_with_constant(constant, chosen);
     if (compared(chosen, begun).deviations < kHopeless * options_.least_deviations) continue;
     Extension other = with_constant(constant, chosen.effects, chosen.forms, chosen.fitted.model);
     if (compared(chosen, other).deviations < options_.least_deviations) continue;

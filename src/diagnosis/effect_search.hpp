@@ -143,7 +143,7 @@ class EffectSearch {
   bool was_left_out(const std::string& effect) const;
   Extension with_constant(const calib::Unknown& constant, const std::vector<std::string>& effects,
                           const effects::Forms& forms, const calib::JointModel& start);
-  Extension begun_with_constant(const calib::Unknown& constant, const Extension& of, const calib::JointModel& start);
+  Extension begun_with_constant(const calib::Unknown& constant, const Extension& of);
   void free_constant(const calib::Unknown& constant, const Extension& with);
   std::optional<Extension> with_a_constant_that_shows(const Extension& chosen);
   std::string made_of_constant(const Extension& chosen, const Extension& without, const std::string& effect);

@@ -248,6 +248,12 @@ TEST_F(FormsOfABench, ACurrentLimitBelowTheKnownOneIsALimitOfTorqueAtAnySpeed) {
   EXPECT_NEAR(cause.parameters.front().estimate.value, 8.0, 0.4);
 }
 
+void expect_only_cause(const Diagnosis& found, const std::string& effect, const std::string& form) {
+  ASSERT_EQ(found.causes.size(), 1U);
+  EXPECT_EQ(found.causes.front().effect, effect);
+  EXPECT_EQ(found.causes.front().form, form);
+}
+
 void expect_in_its_interval(const Cause& cause, const std::string& parameter, double planted) {
   for (const evidence::ParameterEstimate& one : cause.parameters) {
     if (one.name != parameter) continue;
@@ -265,10 +271,8 @@ TEST_F(FormsOfABench, ABeltIsAComplianceThatGivesWayOtherwiseOnTheWayBack) {
     p.transmission.hysteretic_share = 0.6;
     p.transmission.hysteresis_rad = 0.015;
   });
-  ASSERT_EQ(found.causes.size(), 1U);
+  ASSERT_NO_FATAL_FAILURE(expect_only_cause(found, "compliance", "belt"));
   const Cause& cause = found.causes.front();
-  EXPECT_EQ(cause.effect, "compliance");
-  EXPECT_EQ(cause.form, "belt");
   expect_in_its_interval(cause, "transmission.stiffness_Nm_per_rad", 150.0);
   expect_in_its_interval(cause, "transmission.hysteretic_share", 0.6);
   expect_in_its_interval(cause, "transmission.hysteresis_rad", 0.015);
@@ -280,10 +284,8 @@ TEST_F(FormsOfABench, WhatTurnsWithEveryLoadIsTheLoadInThatForm) {
   truth.more_inertia_kg_m2 = 0.03;
   truth.more_gravity_Nm = 0.8;
   const Diagnosis found = diagnosed_from(test::record(test::pd_bench(true), truth, 6, 2e-4));
-  ASSERT_EQ(found.causes.size(), 1U);
+  ASSERT_NO_FATAL_FAILURE(expect_only_cause(found, "load", "adds"));
   const Cause& cause = found.causes.front();
-  EXPECT_EQ(cause.effect, "load");
-  EXPECT_EQ(cause.form, "adds");
   expect_in_its_interval(cause, calib::kMoreInertia, truth.more_inertia_kg_m2);
   expect_in_its_interval(cause, calib::kMoreGravity, truth.more_gravity_Nm);
 }
@@ -300,10 +302,8 @@ TEST_F(FormsOfABench, AZeroThatSlippedIsNamedWithTheRecordingsBetweenWhichItDid)
   }
   const Diagnosis found = diagnosed_from(runs);
   EXPECT_EQ(found.verdict, evidence::Verdict::kFound);
-  ASSERT_EQ(found.causes.size(), 1U);
+  ASSERT_NO_FATAL_FAILURE(expect_only_cause(found, "zero_offset", "slips"));
   const Cause& cause = found.causes.front();
-  EXPECT_EQ(cause.effect, "zero_offset");
-  EXPECT_EQ(cause.form, "slips");
   expect_in_its_interval(cause, calib::kZeroSlip, truth.zero_slip_rad);
   expect_in_its_interval(cause, calib::kZeroSlipAt, truth.zero_slip_at);
   EXPECT_TRUE(std::ranges::any_of(cause.evidence, [](const std::string& sentence) {
@@ -326,13 +326,8 @@ TEST_F(FormsOfABench, ATorqueThatEndsWithTheDriveIsTheDrives) {
       joints.emplace_back(bench, run, joint.step_s());
     }
     fs::remove_all(folder_);
-    test::write_bench(folder_, joints);
-    DiagnoseOptions options;
-    options.model = dry_joint().actuator;
-    const Diagnosis found = diagnose(bench::read_bench(folder_), options);
-    ASSERT_EQ(found.causes.size(), 1U);
-    EXPECT_EQ(found.causes.front().effect, "offset");
-    EXPECT_EQ(found.causes.front().form, of_drive ? "drive" : "constant");
+    const Diagnosis found = diagnosed_from(joints);
+    ASSERT_NO_FATAL_FAILURE(expect_only_cause(found, "offset", of_drive ? "drive" : "constant"));
     EXPECT_TRUE(found.causes.front().form_or_instead.empty());
     expect_in_its_interval(found.causes.front(), of_drive ? "drive.offset_Nm" : "ripple.offset_Nm", 0.4);
   }
