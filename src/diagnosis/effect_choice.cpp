@@ -119,7 +119,7 @@ Extension EffectSearch::exchanged(Extension current) {
   for (std::size_t e = 0; current.effects.size() > 1 && e < current.effects.size() && !stopped_;) {
     const std::string name = current.effects[e++];
     if (measured(name) != nullptr) continue;
-    for (const Trial& other : alternatives(refit_without(current, name), name)) {
+    for (const Trial& other : alternatives(current, name)) {
       if (!clearly_better(other.extension, current) ||
           effects::has_other_sign(other.effect, other.extension.fitted.model) || was_left_out(other.effect) ||
           !objection(other).empty() || is_superfluous(other, current, name))
@@ -200,6 +200,74 @@ Extension EffectSearch::with_simpler_forms(Extension current) {
   return current;
 }
 
+/// (extension, an effect and its special case, both in it) => (the effect alone, in each form that has its present
+/// numbers, fitted from these; the best).
+Extension EffectSearch::alone(const Extension& from, const std::string& effect, const std::string& special) const {
+  Extension best{from.effects, {}, {}, from.forms, {}};
+  std::erase(best.effects, special);
+  best.forms.erase(special);
+  best.fitted.squares = std::numeric_limits<double>::infinity();
+  std::vector<std::string> others = best.effects;
+  std::erase(others, effect);
+  const calib::JointModel neither =
+      fits_.without(fits_.without(from.fitted.model, special, others, from.forms), effect, others, from.forms);
+  const std::vector<effects::Form>& forms = effects::effect(effect).forms;
+  const std::vector<std::string>& parameters = effects::form_of(effect, from.forms).parameters;
+  for (std::size_t f = 0; f < forms.size(); ++f) {
+    if (forms[f].parameters != parameters) continue;
+    calib::JointModel start = neither;
+    for (const std::string& name : parameters) calib::set(start, name, calib::value(from.fitted.model, name));
+    for (const effects::FixedValue& fixed : forms[f].fixed) calib::set(start, fixed.parameter, fixed.value);
+    effects::Forms with_form = best.forms;
+    with_form[effect] = f;
+    Extension one = extend(best.effects, with_form, start);
+    if (one.fitted.squares < best.fitted.squares) best = std::move(one);
+  }
+  return best;
+}
+
+Extension EffectSearch::without_special_cases(Extension current) const {
+  for (const std::string& name : std::vector<std::string>(current.effects)) {
+    for (const std::string& special : std::vector<std::string>(current.effects)) {
+      if (!effects::contains(current.effects, name) || measured(special) != nullptr || measured(name) != nullptr ||
+          !effects::is_nested(special, current.forms, name, current.forms))
+        continue;
+      Extension rest = alone(current, name, special);
+      if (compared(rest, current).deviations < options_.clearly_deviations) current = std::move(rest);
+    }
+  }
+  return current;
+}
+
+/// True if the effect is convincing beside the extension's others.
+bool EffectSearch::stands(const Extension& extension, const std::string& effect) {
+  return objection(trial(refit_without(extension, effect), extension, effect)).empty();
+}
+
+/// (extension that leaves more than a model in order; no effect is convincing beside it) => (the same with one more
+/// effect and what is convincing then, if all of it is in the end; nothing if there is none). Beside what is much
+/// larger or still missing, forms and numbers that do not fit yet hide how much an effect explains: so it is taken on
+/// trial.
+std::optional<Extension> EffectSearch::with_one_on_trial(const Extension& current) {
+  if (on_trial_ || !misses(current)) return std::nullopt;
+  const double least_share = leaves_rest(current) ? options_.nearly_all_of_rest : options_.gain_of_rest;
+  const std::vector<Trial> additions = last_additions_;
+  std::vector<Trial> trials = additions;
+  std::erase_if(trials, [&](const Trial& trial) { return trial.share_of_rest < least_share; });
+  for (Trial& trial : trials) trial.on_trial = true;
+  const Trial* next = chosen(trials);
+  if (next == nullptr) return std::nullopt;
+  on_trial_ = true;
+  Extension with = completed(in_best_forms(next->extension));
+  on_trial_ = false;
+  const bool all = std::all_of(with.effects.begin(), with.effects.end(), [&](const std::string& name) {
+    return measured(name) != nullptr || stands(with, name);
+  });
+  if (all && with.effects.size() > current.effects.size()) return with;
+  last_additions_ = additions;
+  return std::nullopt;
+}
+
 Extension EffectSearch::choose() { return completed(with_measured()); }
 
 /// (extension) => (extension with the effects that the runs need besides).
@@ -212,12 +280,13 @@ Extension EffectSearch::completed(Extension current) {
       current = in_best_forms(pruned(next->extension, current));
       continue;
     }
-    if (!leaves_rest(current)) break;
-    std::optional<Extension> pair = with_pair(current);
-    if (!pair) break;
-    current = in_best_forms(*std::move(pair));
+    std::optional<Extension> more;
+    if (leaves_rest(current)) more = with_pair(current);
+    if (!more) more = with_one_on_trial(current);
+    if (!more) break;
+    current = in_best_forms(*std::move(more));
   }
-  return in_best_forms(with_simpler_forms(in_best_forms(exchanged(std::move(current)))));
+  return in_best_forms(with_simpler_forms(in_best_forms(exchanged(without_special_cases(std::move(current))))));
 }
 
 Extension EffectSearch::leave_out(const Extension& from, const std::string& effect, const std::string& why) {

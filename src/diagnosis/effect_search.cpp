@@ -25,6 +25,8 @@ std::vector<std::string> less(std::vector<std::string> effects, const std::strin
   return effects;
 }
 
+bool better(const Trial& a, const Trial& b) { return a.comparison.log_gain > b.comparison.log_gain; }
+
 std::vector<std::string> periods(std::vector<std::string> parameters) {
   std::erase_if(parameters, [](const std::string& name) { return !effects::is_period(name); });
   return parameters;
@@ -160,6 +162,11 @@ effects::NestedModel EffectSearch::from_other_starts(const Extension& with_prior
   return effects::from_other_starts(fit_, std::move(model), parameters, iterations);
 }
 
+bool EffectSearch::misses(const Extension& extension) const {
+  const double mean_rest = extension.held_out_squares() / fit_.blocks().all_samples() - limits_.noise_squares;
+  return std::max(usual_rest(extension), mean_rest) > (options_.remains_of_noise - 1.0) * limits_.noise_squares;
+}
+
 Trial EffectSearch::trial(const Extension& without, const Extension& with, const std::string& effect) const {
   Trial found{effect, compare_(without.held_out, with.held_out), 0.0, with};
   const double rest = without.held_out_squares() / fit_.blocks().all_samples() - limits_.healthy_squares;
@@ -168,7 +175,7 @@ Trial EffectSearch::trial(const Extension& without, const Extension& with, const
     const double usual = usual_rest(without);
     if (usual > 0.0) found.share_of_rest = std::max(found.share_of_rest, found.comparison.usual_gain / usual);
   }
-  found.missed_alone = usual_rest(without) > (options_.remains_of_noise - 1.0) * limits_.noise_squares;
+  found.missed_alone = misses(without);
   return found;
 }
 
@@ -186,6 +193,26 @@ std::vector<effects::ScreenedStart> EffectSearch::screened_starts(const Extensio
   const std::vector<effects::ScreenedStart> further = screen.at(effect, 0, evident->second);
   starts.insert(starts.end(), further.begin(), further.end());
   return starts;
+}
+
+/// (extension, an effect, its starts) => (first fit with the effect, from the best of the starts; its folds are
+/// foretold).
+Extension EffectSearch::begun(const Extension& without, const std::string& effect,
+                              const std::vector<effects::ScreenedStart>& starts,
+                              const effects::RolloutJacobian& known) const {
+  const std::vector<std::string> effects = with(without.effects, effect);
+  Extension best;
+  best.fitted.squares = std::numeric_limits<double>::infinity();
+  for (const effects::ScreenedStart& start : starts) {
+    effects::Forms forms = without.forms;
+    forms[effect] = start.form;
+    const effects::NestedModel fitted =
+        fit_.fit(start.model, fits_.unknowns(effects, forms), static_cast<int>(options_.few_iterations), &known);
+    if (fitted.squares < best.fitted.squares) best = {effects, fitted, {}, forms, {}};
+  }
+  if (best.fitted.blocks.empty()) fit_.linearise(best.fitted, &known);
+  best.held_out = fitting::foretold_held_out_squares(best.fitted, compare_.folds());
+  return best;
 }
 
 /// (extension) => (trials of the effects that it lacks): screened by the linearised fit, the most promising ones
@@ -214,21 +241,8 @@ std::vector<Trial> EffectSearch::tried(const Extension& current, double most, bo
   std::vector<Trial> trials;
   for (const Promising& p : promising) {
     if (!going(fmt::format("fitting {}", p.effect->title))) return {};
-    const std::vector<std::string> effects = with(current.effects, p.effect->name);
-    Extension best;
-    best.fitted.squares = std::numeric_limits<double>::infinity();
-    for (const effects::ScreenedStart& start : p.starts) {
-      effects::Forms forms = current.forms;
-      forms[p.effect->name] = start.form;
-      const effects::NestedModel fitted =
-          fit_.fit(start.model, fits_.unknowns(effects, forms), static_cast<int>(options_.few_iterations), &known);
-      if (fitted.squares < best.fitted.squares) best = {effects, fitted, {}, forms, {}};
-    }
-    if (best.fitted.blocks.empty()) fit_.linearise(best.fitted, &known);
-    best.held_out = fitting::foretold_held_out_squares(best.fitted, compare_.folds());
-    trials.push_back(trial(current, best, p.effect->name));
+    trials.push_back(trial(current, begun(current, p.effect->name, p.starts, known), p.effect->name));
   }
-  const auto better = [](const Trial& a, const Trial& b) { return a.comparison.log_gain > b.comparison.log_gain; };
   std::stable_sort(trials.begin(), trials.end(), better);
   // After few iterations a fit may still lie in a valley (load friction as a proxy for Coulomb friction). So the fit
   // with the lowest squares is always finished, whatever its folds say so far.
@@ -266,6 +280,30 @@ Extension EffectSearch::at_best_period(Extension extension, const std::string& e
   return extension;
 }
 
+/// (extension, its effect) => (a sample and hold in the place of what makes something late, fitted; nothing where the
+/// effect is none such). It begins with the numbers that the rest has beside the effect: fitted without it, these make
+/// up for most of the wait, and there a hold of the right period explains nothing.
+std::optional<Trial> EffectSearch::hold_in_its_place(const Extension& current, const std::string& effect) {
+  const effects::Effect& hold = effects::effect("hold");
+  if (!effects::is_late(effects::form_of(effect, current.forms)) || effects::contains(current.effects, hold.name) ||
+      !going(fmt::format("fitting {} in the place of {}", hold.title, effects::title(effect))))
+    return std::nullopt;
+  Extension rest{less(current.effects, effect), {}, {}, current.forms, {}};
+  rest.forms.erase(effect);
+  rest.fitted = fit_.fit(fits_.without(current.fitted.model, effect, rest.effects, rest.forms),
+                         fits_.unknowns(rest.effects, rest.forms), 0);
+  const effects::StartScreen screen(fit_, rest.fitted);
+  std::vector<effects::ScreenedStart> starts;
+  for (std::size_t form = 0; form < hold.forms.size(); ++form) {
+    const std::vector<effects::ScreenedStart> best = screen.best(hold, form, base_.scale);
+    if (!best.empty()) starts.push_back(best.front());
+  }
+  if (starts.empty()) return std::nullopt;
+  const Extension first = begun(rest, hold.name, starts, screen.jacobian());
+  const Extension whole = at_best_period(extend(first.effects, first.forms, first.fitted.model), hold.name);
+  return trial(refit_without(current, effect), whole, hold.name);
+}
+
 std::vector<Trial> EffectSearch::additions(const Extension& to) { return tried(to, options_.fitted_effects, true); }
 
 double EffectSearch::usual_rest(const Extension& extension) const {
@@ -280,10 +318,16 @@ fitting::Comparison EffectSearch::compared(const Extension& first, const Extensi
   return compare_(first.held_out, second.held_out);
 }
 
-const std::vector<Trial>& EffectSearch::alternatives(const Extension& without, const std::string& effect) {
+const std::vector<Trial>& EffectSearch::alternatives(const Extension& current, const std::string& effect) {
+  const Extension& without = refit_without(current, effect);
   const auto [known, fresh] = alternatives_.try_emplace({effect, without.fitted.squares});
   if (!fresh) return known->second;
   known->second = tried(without, options_.exchanged_effects, false);
+  if (std::optional<Trial> hold = hold_in_its_place(current, effect)) {
+    std::erase_if(known->second,
+                  [&](const Trial& trial) { return trial.effect == hold->effect && better(*hold, trial); });
+    known->second.push_back(*std::move(hold));
+  }
   // An effect that contains this one as a special case explains as much: the simpler one stands.
   std::erase_if(known->second, [&](const Trial& trial) {
     return trial.effect == effect || effects::contains(effects::effect(trial.effect).contains, effect);

@@ -29,6 +29,7 @@ struct Trial {
   std::string against{};      ///< why it was not taken where it was tried; "" if it was, or might have been
   bool missed_alone = true;   ///< without it more would remain than a verdict forgives (remains_of_noise)
   bool clearly_best = false;  ///< of its round, in which nothing else is convincing
+  bool on_trial = false;      ///< to be judged once what it needs beside it is there
 };
 
 /// A chosen extension, and its fit with priors. `chosen` is that fit where it is better.
@@ -66,9 +67,10 @@ class EffectSearch {
   /// At the end each effect takes the best of its forms. Costs some hundred rollouts of all runs for each effect that
   /// is added.
   Extension choose();
-  /// (extension without an effect, that effect) => (fits of other effects in its place, the best first). Costs up to
-  /// five fits; nothing when asked again, as choose() and the explanation of its result do.
-  const std::vector<Trial>& alternatives(const Extension& without, const std::string& effect);
+  /// (extension, its effect) => (fits of other effects in its place, the best first; a sample and hold in the place of
+  /// what makes something late comes last). Costs up to five fits; nothing when asked again, as choose() and the
+  /// explanation of its result do.
+  const std::vector<Trial>& alternatives(const Extension& current, const std::string& effect);
   /// (extension) => (fits with one more effect each, the best first). Costs up to eight fits.
   std::vector<Trial> additions(const Extension& to);
   /// (extension, effect) => (extension without the effect, fitted again to its end). Costs one fit; nothing when asked
@@ -102,6 +104,11 @@ class EffectSearch {
   /// form that explains the most of those of which the effect has all parameters). A play of zero is a shaft that
   /// bends.
   std::optional<Extension> as_special_case(const Extension& from, const std::string& effect) const;
+
+  /// (extension) => (the same without effects of which another one has every number, where that one does their part,
+  /// too). Play takes the place of the soft shaft that stood for it, with the sensor on the side where that had it.
+  /// Costs a fit of each form for each such pair.
+  Extension without_special_cases(Extension current) const;
 
   /// True if another effect has every number of this effect's form and a further one, and explains less beside it than
   /// a second effect must: friction that differs a little by direction is the friction.
@@ -153,18 +160,26 @@ class EffectSearch {
   Trial trial(const Extension& without, const Extension& with, const std::string& effect) const;
   std::string doubt(const Trial& trial) const;
   Extension at_best_period(Extension extension, const std::string& effect) const;
+  Extension begun(const Extension& without, const std::string& effect,
+                  const std::vector<effects::ScreenedStart>& starts, const effects::RolloutJacobian& known) const;
+  std::optional<Trial> hold_in_its_place(const Extension& current, const std::string& effect);
   std::vector<Trial> tried(const Extension& without, double most, bool all_evident);
   bool stands_for(const Trial& special, const Trial& of) const;
   const Trial* chosen(std::vector<Trial>& trials) const;
   const Trial* clearly_best(std::vector<Trial>& trials) const;
+  /// More remains, in usual blocks or on average, than a verdict forgives (remains_of_noise).
+  bool misses(const Extension& extension) const;
   bool leaves_rest(const Extension& extension) const;
   std::string objection_to_pair(const Extension& pair, const std::string& first, const std::string& second);
   std::optional<Extension> with_pair(const Extension& current);
+  bool stands(const Extension& extension, const std::string& effect);
+  std::optional<Extension> with_one_on_trial(const Extension& current);
   Extension pruned(Extension current, const Extension& before);
   bool clearly_better(const Extension& other, const Extension& current) const;
   Extension exchanged(Extension current);
   Extension in_best_forms(Extension current);
   Extension with_simpler_forms(Extension current);
+  Extension alone(const Extension& from, const std::string& effect, const std::string& special) const;
   /// A screen of an extension, and the starts of effects that it was asked for.
   struct Look {
     effects::StartScreen screen;
@@ -196,6 +211,7 @@ class EffectSearch {
   std::map<std::pair<std::string, double>, std::vector<Trial>> alternatives_;
   std::map<std::string, std::vector<std::string>> forms_compared_at_;  // beside which effects
   std::optional<Look> latest_look_;
+  bool on_trial_ = false;  // an effect is, at present
   bool stopped_ = false;
 };
 

@@ -85,7 +85,7 @@ class Explaining {
     }
     add_place(cause);
     add_checks(cause);
-    if (measured == nullptr) add_rivals(cause, rest);
+    if (measured == nullptr) add_rivals(cause);
     return cause;
   }
 
@@ -125,9 +125,9 @@ class Explaining {
     }
   }
 
-  void add_rivals(Cause& cause, const Extension& rest) {
+  void add_rivals(Cause& cause) {
     Rivals rivals{{chosen_.fitted}, {cause.effect}};
-    for (const Trial& other : search_.alternatives(rest, cause.effect)) {
+    for (const Trial& other : search_.alternatives(chosen_, cause.effect)) {
       const effects::SeenSeparation apart = seen(other.extension);
       if (!is_rival(other, apart) || search_.refuted(other) || search_.is_superfluous(other, chosen_, cause.effect))
         continue;

@@ -92,7 +92,7 @@ std::string EffectSearch::objection(const Trial& trial) const {
   const double amplitude = std::sqrt(gain);
   const double beginning =
       std::max(0.0, base_extension_.held_out_squares() / fit_.blocks().all_samples() - limits_.noise_squares);
-  if (c.deviations < options_.least_deviations) {
+  if (c.deviations < (trial.on_trial ? options_.deviations_on_trial : options_.least_deviations)) {
     return fmt::format("its gain on runs left out is only {:.1f} of its deviations", c.deviations);
   }
   if (c.folds_won < options_.least_folds_won)
@@ -105,7 +105,8 @@ std::string EffectSearch::objection(const Trial& trial) const {
   const bool all = trial.clearly_best && trial.share_of_rest >= options_.all_of_rest &&
                    c.deviations >= options_.all_of_rest_deviations;
   const bool counts = all || (trial.missed_alone && (few_blocks || trial.share_of_rest >= options_.nearly_all_of_rest));
-  if (gain < least * beginning && !counts) return "what it explains is small against the initial residual";
+  if (gain < least * beginning && !counts && !trial.on_trial)
+    return "what it explains is small against the initial residual";
   if (trial.share_of_rest < limits_.of_rest) {
     return fmt::format("it explains {:.0f} % of what is left: model-form errors of other effects can explain as much",
                        100.0 * trial.share_of_rest);

@@ -43,7 +43,7 @@ struct JointDiagnosisOptions {
       kPlants};
   work::Threshold scratch_amplitude_of_beginning{0.05, "", "amplitude_of_beginning without a model", kPlants};
   work::Threshold scratch_gain_of_rest{0.1, "", "gain_of_rest without a model", kPlants};
-  work::Threshold nearly_all_of_rest{0.8, "",
+  work::Threshold nearly_all_of_rest{0.75, "",
                                      "from this share of the residual beyond a correct model's, amplitude_of_beginning "
                                      "doesn't count: what mends another effect's form leaves a rest itself; only where "
                                      "the residual without the effect is above remains_of_noise",
@@ -55,6 +55,9 @@ struct JointDiagnosisOptions {
       "hidden plants with two effects"};
   work::Threshold all_of_rest_deviations{6.0, "", "and if its gain is so many of its deviations",
                                          "hidden plants with two effects"};
+  work::Threshold deviations_on_trial{2.0, "",
+                                      "or of so many, on trial: judged again once what it needs beside it is there",
+                                      "hidden plants with two effects"};
   work::Threshold worse_deviations{2.0, "",
                                    "an effect is not taken if runs of a gain, a load or a trajectory left out are "
                                    "predicted worse with it, by so many standard deviations",
@@ -162,15 +165,15 @@ struct JointDiagnosisOptions {
 
   PMG_THRESHOLDS(least_deviations, least_folds_won, amplitude_of_noise, amplitude_of_beginning, mean_of_few_blocks,
                  gain_of_rest, scratch_amplitude_of_noise, scratch_amplitude_of_beginning, scratch_gain_of_rest,
-                 nearly_all_of_rest, all_of_rest, all_of_rest_deviations, worse_deviations, one_torque, equal_gain,
-                 clearly_deviations, regained_share, stays_at_half_step, most_effects, apart_deviations, apart_share,
-                 fewest_apart_blocks, visible_share, better_form_deviations, hopeless_form_deviations, remains_of_noise,
-                 remains_of_beginning, coarser_quantum, quantum_of_noise, gain_tolerance, damping_tolerance,
-                 friction_tolerance, load_tolerance, deviation_of_tolerance, constant_gain_of_rest, stiffer_presliding,
-                 softer_presliding, intervals, enough_deviations, most_asked_runs, most_asked_recordings, searched_runs,
-                 fitted_effects, exchanged_effects, fitted_pairs, finished_pairs, finished_effects, worth_finishing,
-                 worth_fitting_form, few_iterations, many_iterations, settled_squares, assembly, odd_runs, step,
-                 signatures, extension)
+                 nearly_all_of_rest, all_of_rest, all_of_rest_deviations, deviations_on_trial, worse_deviations,
+                 one_torque, equal_gain, clearly_deviations, regained_share, stays_at_half_step, most_effects,
+                 apart_deviations, apart_share, fewest_apart_blocks, visible_share, better_form_deviations,
+                 hopeless_form_deviations, remains_of_noise, remains_of_beginning, coarser_quantum, quantum_of_noise,
+                 gain_tolerance, damping_tolerance, friction_tolerance, load_tolerance, deviation_of_tolerance,
+                 constant_gain_of_rest, stiffer_presliding, softer_presliding, intervals, enough_deviations,
+                 most_asked_runs, most_asked_recordings, searched_runs, fitted_effects, exchanged_effects, fitted_pairs,
+                 finished_pairs, finished_effects, worth_finishing, worth_fitting_form, few_iterations, many_iterations,
+                 settled_squares, assembly, odd_runs, step, signatures, extension)
 };
 
 /// Every row of both by its name for --set: a joint's as they are, the data's as "data_faults.NAME".

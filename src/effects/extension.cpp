@@ -23,6 +23,14 @@ const Form& form_of(const std::string& effect_name, const Forms& forms) {
   return effect(effect_name).forms.at(found == forms.end() ? 0 : found->second);
 }
 
+bool is_late(const Form& form) {
+  return std::any_of(form.parameters.begin(), form.parameters.end(), [](const std::string& name) {
+    const model::Quantity quantity = calib::quantity(name);
+    return quantity == model::Quantity::kDelay || quantity == model::Quantity::kPeriod ||
+           quantity == model::Quantity::kLag;
+  });
+}
+
 bool is_nested(const std::string& effect, const Forms& its_forms, const std::string& in, const Forms& forms) {
   const std::vector<std::string>&numbers = form_of(effect, its_forms).parameters, &more = form_of(in, forms).parameters;
   return numbers.size() < more.size() &&

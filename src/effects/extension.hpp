@@ -30,6 +30,9 @@ const Form& form_of(const std::string& effect, const Forms& forms);
 /// True if an effect's form has every number of another effect's form, and more.
 bool is_nested(const std::string& effect, const Forms& its_forms, const std::string& in, const Forms& forms);
 
+/// True for a form by which something comes late: a delay, a lag, or a sample and hold.
+bool is_late(const Form& form);
+
 /// A form that the runs don't tell from the one in a model.
 struct OpenForm {
   std::string name;

@@ -309,6 +309,106 @@ TEST_F(Judged, ADelayBesideARateLimitIsNoProfile) {
   EXPECT_EQ(effects::form_of("rate_limit", found.forms).name, "command");
 }
 
+/// While the dry friction is missing, the constant torque does not explain nearly all of the rest.
+TEST_F(Judged, AnEffectOnTrialStaysWhereItConvincesInTheEnd) {
+  calib::JointModel dry = truth_;
+  dry.actuator.friction.coulomb_Nm = 0.12;
+  dry.actuator.ripple.offset_Nm = 0.4;
+  const effects::NestedFit runs(test::record(bench_, dry, 4, 2e-4), 1);
+  fit_ = &runs;
+  JointDiagnosisOptions options;
+  options.fitted_effects = 3.0, options.exchanged_effects = options.fitted_pairs = 0.0;
+  options.remains_of_beginning = 1.0;  // a verdict forgives all
+  options.nearly_all_of_rest = 0.98, options.all_of_rest = 2.0;
+  const auto chosen = [&](double deviations_on_trial) {
+    options.deviations_on_trial = deviations_on_trial;
+    EffectSearch at = search(options, 1e9);
+    const std::vector<std::string> effects = at.choose().effects;
+    return std::set<std::string>(effects.begin(), effects.end());
+  };
+  EXPECT_EQ(chosen(2.0), (std::set<std::string>{"coulomb", "offset"}));
+  EXPECT_EQ(chosen(1e9), (std::set<std::string>{}));
+}
+
+TEST_F(Judged, OnTrialAGainNeedNotBeAsSureNorLargeBesideTheBeginning) {
+  fit_ = &pushed_;
+  const EffectSearch at = search({}, 1e9);
+  Trial trial = convincing("offset", extension(at, "offset", 0.2));
+  trial.share_of_rest = 0.5;
+  trial.comparison.deviations = 2.5;
+  EXPECT_NE(at.objection(trial), "");
+  trial.on_trial = true;
+  EXPECT_EQ(at.objection(trial), "");
+  trial.comparison.deviations = 1.5;
+  EXPECT_NE(at.objection(trial), "") << "that is nothing";
+}
+
+TEST_F(Judged, WhatIsMissedInFewBlocksIsMissed) {
+  std::vector<calib::SingleJoint> joints = test::record(bench_, truth_, 16, 2e-4);
+  joints.push_back(pushed_.runs().front());
+  const effects::NestedFit runs(std::move(joints), 1);
+  fit_ = &runs;
+  JointDiagnosisOptions options;
+  options.fitted_effects = 1.0;
+  EffectSearch at = search(options);
+  ASSERT_LT(at.usual_rest(at.base()), 5.0 * 4e-8) << "usual blocks are in order";
+  const std::vector<Trial> trials = at.additions(at.base());
+  ASSERT_FALSE(trials.empty());
+  EXPECT_TRUE(trials.front().missed_alone);
+}
+
+/// A lag makes up for a hold of the readings, and the spring's numbers for what differs.
+TEST_F(Judged, AHoldIsTriedInThePlaceOfALagBesideTheNumbersThatItHas) {
+  calib::JointModel held = truth_;
+  held.actuator.transmission.stiffness_Nm_per_rad = 40.0;
+  held.actuator.transmission.damping_Nm_s_per_rad = 0.1;
+  held.actuator.sensor.hold_s = 0.016;
+  const effects::NestedFit runs(test::record(bench_, held, 4, 2e-4), 1);
+  fit_ = &runs;
+  JointDiagnosisOptions options;
+  EffectSearch at = search(options);
+  Extension lags{{"compliance", "sensor_lag"}, {}, {}, {}, {}};
+  calib::JointModel start = held;
+  start.actuator.sensor.hold_s = 0.0;
+  start.actuator.sensor.lag_s = 0.008;
+  calib::Unknowns unknowns;
+  for (const std::string& effect : lags.effects) {
+    for (const std::string& name : effects::form_of(effect, {}).parameters)
+      unknowns.push_back(effects::unknown(name, bench_, at.base_model().scale));
+  }
+  lags.fitted = runs.fit(start, unknowns, 10);
+  runs.linearise(lags.fitted);
+  lags.held_out = runs.held_out_squares(lags.fitted, folds(runs));
+  const std::vector<Trial>& others = at.alternatives(lags, "sensor_lag");
+  ASSERT_FALSE(others.empty());
+  EXPECT_EQ(others.back().effect, "hold");
+  EXPECT_NEAR(others.back().extension.fitted.model.actuator.sensor.hold_s, 0.016, 5e-4);
+  EXPECT_GT(at.compared(lags, others.back().extension).deviations, 3.0);
+}
+
+/// A shaft that bends behind the sensor stood for the play there, until play came with the sensor on the other side.
+TEST_F(Judged, PlayTakesThePlaceOfTheSoftShaftThatStoodForIt) {
+  calib::JointModel loose = truth_;
+  loose.actuator.transmission.backlash_rad = 0.03;
+  loose.actuator.transmission.stiffness_Nm_per_rad = 100.0;
+  loose.actuator.transmission.damping_Nm_s_per_rad = 0.2;
+  loose.actuator.sensor.on_motor = 1.0;
+  const effects::NestedFit runs(test::record(bench_, loose, 4, 2e-4), 1);
+  fit_ = &runs;
+  const EffectSearch at = search();
+  Extension both{{"compliance", "backlash"}, {}, {}, {{"compliance", 3}}, {}};
+  ASSERT_EQ(effects::form_of("compliance", both.forms).name, "sensor_before");
+  calib::Unknowns unknowns;
+  for (const std::string& name : effects::form_of("backlash", {}).parameters)
+    unknowns.push_back(effects::unknown(name, bench_, at.base_model().scale));
+  both.fitted = runs.fit(loose, unknowns, 4);
+  both.held_out = runs.held_out_squares(both.fitted, folds(runs));
+  const Extension found = at.without_special_cases(both);
+  EXPECT_EQ(found.effects, std::vector<std::string>{"backlash"});
+  EXPECT_EQ(effects::form_of("backlash", found.forms).name, "sensor_before");
+  EXPECT_NEAR(found.fitted.model.actuator.transmission.backlash_rad, 0.03, 0.002);
+}
+
 /// Fitted to both loads it helps. But each load left out tells another story.
 TEST_F(Judged, AnEffectThatHelpsInTheSumAndHurtsLoadsLeftOutIsNotTaken) {
   const effects::NestedFit differing = pushed(0.3, 0.09);
