@@ -249,7 +249,7 @@ bool EffectSearch::stands(const Extension& extension, const std::string& effect)
 /// larger or still missing, forms and numbers that do not fit yet hide how much an effect explains: so it is taken on
 /// trial.
 std::optional<Extension> EffectSearch::with_one_on_trial(const Extension& current) {
-  if (on_trial_ || !misses(current)) return std::nullopt;
+  if (on_trial_ || !misses(current, true)) return std::nullopt;
   const double least_share = leaves_rest(current) ? options_.nearly_all_of_rest : options_.gain_of_rest;
   const std::vector<Trial> additions = last_additions_;
   std::vector<Trial> trials = additions;

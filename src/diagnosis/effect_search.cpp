@@ -162,9 +162,10 @@ effects::NestedModel EffectSearch::from_other_starts(const Extension& with_prior
   return effects::from_other_starts(fit_, std::move(model), parameters, iterations);
 }
 
-bool EffectSearch::misses(const Extension& extension) const {
+bool EffectSearch::misses(const Extension& extension, bool on_average_too) const {
+  const double forgiven = (options_.remains_of_noise - 1.0) * limits_.noise_squares;
   const double mean_rest = extension.held_out_squares() / fit_.blocks().all_samples() - limits_.noise_squares;
-  return std::max(usual_rest(extension), mean_rest) > (options_.remains_of_noise - 1.0) * limits_.noise_squares;
+  return usual_rest(extension) > forgiven || (on_average_too && mean_rest > forgiven);
 }
 
 Trial EffectSearch::trial(const Extension& without, const Extension& with, const std::string& effect) const {
@@ -175,7 +176,7 @@ Trial EffectSearch::trial(const Extension& without, const Extension& with, const
     const double usual = usual_rest(without);
     if (usual > 0.0) found.share_of_rest = std::max(found.share_of_rest, found.comparison.usual_gain / usual);
   }
-  found.missed_alone = misses(without);
+  found.missed_alone = misses(without, found.comparison.deviations >= options_.all_of_rest_deviations);
   return found;
 }
 

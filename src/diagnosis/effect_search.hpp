@@ -167,8 +167,8 @@ class EffectSearch {
   bool stands_for(const Trial& special, const Trial& of) const;
   const Trial* chosen(std::vector<Trial>& trials) const;
   const Trial* clearly_best(std::vector<Trial>& trials) const;
-  /// More remains, in usual blocks or on average, than a verdict forgives (remains_of_noise).
-  bool misses(const Extension& extension) const;
+  /// More remains in usual blocks than a verdict forgives (remains_of_noise), or if that counts, on average.
+  bool misses(const Extension& extension, bool on_average_too) const;
   bool leaves_rest(const Extension& extension) const;
   std::string objection_to_pair(const Extension& pair, const std::string& first, const std::string& second);
   std::optional<Extension> with_pair(const Extension& current);

@@ -53,8 +53,11 @@ struct JointDiagnosisOptions {
       "and from this share, wherever the residual is, where no effect is taken otherwise and it "
       "is better than every other by clearly_deviations: what mends a form has rivals",
       "hidden plants with two effects"};
-  work::Threshold all_of_rest_deviations{6.0, "", "and if its gain is so many of its deviations",
-                                         "hidden plants with two effects"};
+  work::Threshold all_of_rest_deviations{
+      6.0, "",
+      "and if its gain is so many of its deviations; with as many, what remains on average counts as what remains in "
+      "usual blocks, too",
+      "hidden plants with two effects"};
   work::Threshold deviations_on_trial{2.0, "",
                                       "or of so many, on trial: judged again once what it needs beside it is there",
                                       "hidden plants with two effects"};

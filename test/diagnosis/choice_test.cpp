@@ -343,18 +343,20 @@ TEST_F(Judged, OnTrialAGainNeedNotBeAsSureNorLargeBesideTheBeginning) {
   EXPECT_NE(at.objection(trial), "") << "that is nothing";
 }
 
-TEST_F(Judged, WhatIsMissedInFewBlocksIsMissed) {
+TEST_F(Judged, WhatIsSurelyMissedInFewBlocksIsMissed) {
   std::vector<calib::SingleJoint> joints = test::record(bench_, truth_, 16, 2e-4);
   joints.push_back(pushed_.runs().front());
   const effects::NestedFit runs(std::move(joints), 1);
   fit_ = &runs;
   JointDiagnosisOptions options;
-  options.fitted_effects = 1.0;
+  options.fitted_effects = 1.0, options.all_of_rest_deviations = -100.0;
   EffectSearch at = search(options);
   ASSERT_LT(at.usual_rest(at.base()), 5.0 * 4e-8) << "usual blocks are in order";
   const std::vector<Trial> trials = at.additions(at.base());
   ASSERT_FALSE(trials.empty());
   EXPECT_TRUE(trials.front().missed_alone);
+  options.all_of_rest_deviations = 1e9;
+  EXPECT_FALSE(search(options).additions(at.base()).front().missed_alone) << "on average only what is sure counts";
 }
 
 /// A lag makes up for a hold of the readings, and the spring's numbers for what differs.
