@@ -325,8 +325,12 @@ const std::vector<Trial>& EffectSearch::alternatives(const Extension& current, c
   if (!fresh) return known->second;
   known->second = tried(without, options_.exchanged_effects, false);
   if (std::optional<Trial> hold = hold_in_its_place(current, effect)) {
-    std::erase_if(known->second,
-                  [&](const Trial& trial) { return trial.effect == hold->effect && better(*hold, trial); });
+    const auto twin = std::find_if(known->second.begin(), known->second.end(),
+                                   [&](const Trial& trial) { return trial.effect == hold->effect; });
+    if (twin != known->second.end()) {
+      if (!better(*hold, *twin)) hold = *twin;
+      known->second.erase(twin);
+    }
     known->second.push_back(*std::move(hold));
   }
   // An effect that contains this one as a special case explains as much: the simpler one stands.
