@@ -403,9 +403,11 @@ Settled EffectSearch::settled(Extension chosen) {
     for (const std::string& name : chosen.effects) {
       if (measured(name) != nullptr || !going("a last look at " + effects::title(name))) continue;
       const Extension without = refit_without(chosen, name);
-      const Trial last = trial(without, chosen, name);
+      Trial last = trial(without, chosen, name);
+      last.clearly_best = true;  // as far as it had to be when it was taken
       std::string against =
           last.comparison.log_gain > 0.0 ? doubt(last) : "runs left out are predicted no better with it";
+      if (against.empty() && !shown(name) && is_small(last)) against = kSmall;
       if (against.empty()) against = unsure(name, with_priors.forms, with_priors.fitted);
       if (against.empty()) against = made_of_step(chosen, last, step_error_rad);
       if (against.empty()) against = made_of_constant(chosen, without, name);

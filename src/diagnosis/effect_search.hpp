@@ -122,6 +122,9 @@ class EffectSearch {
   /// each fit of an effect in doubt.
   bool refuted(const Trial& trial) const;
 
+  static constexpr const char* kSmall = "what it explains is small against the initial residual";
+  double gain_of(const Trial& trial) const;
+  bool is_small(const Trial& trial) const;
   /// Why the trial is not convincing, or "".
   std::string objection(const Trial& trial) const;
   /// Why the effect's numbers in this linearised fit are none, or "": the 95 % intervals of its strengths contain the

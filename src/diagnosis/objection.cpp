@@ -77,6 +77,28 @@ bool EffectSearch::refuted(const Trial& trial) const {
   return known->second;
 }
 
+/// The gain that counts [rad^2]. An uncalibrated model may leave outlier blocks: then the gain of the geometric mean
+/// counts, too.
+double EffectSearch::gain_of(const Trial& trial) const {
+  const bool from_scratch = limits_.healthy_squares <= limits_.noise_squares;
+  return from_scratch ? std::max(trial.comparison.gain, trial.comparison.usual_gain) : trial.comparison.gain;
+}
+
+/// True if what the effect explains is small against the initial residual, and what the model misses without it doesn't
+/// ask for it.
+bool EffectSearch::is_small(const Trial& trial) const {
+  const fitting::Comparison& c = trial.comparison;
+  const double beginning =
+      std::max(0.0, base_extension_.held_out_squares() / fit_.blocks().all_samples() - limits_.noise_squares);
+  // A second effect that only mends the first one's form leaves a rest itself, or mends what a verdict forgives.
+  const double least = std::pow(limits_.of_beginning, 2), usual = usual_rest(base_extension_);
+  const bool few_blocks = beginning > options_.mean_of_few_blocks * usual && c.usual_gain >= least * usual;
+  const bool all = trial.clearly_best && trial.share_of_rest >= options_.all_of_rest &&
+                   c.deviations >= options_.all_of_rest_deviations;
+  const bool counts = all || (trial.missed_alone && (few_blocks || trial.share_of_rest >= options_.nearly_all_of_rest));
+  return gain_of(trial) < least * beginning && !counts;
+}
+
 std::string EffectSearch::objection(const Trial& trial) const {
   const fitting::Comparison& c = trial.comparison;
   if (shown(trial.effect)) {  // half-second blocks hardly detect an effect that is constant over a run
@@ -84,29 +106,17 @@ std::string EffectSearch::objection(const Trial& trial) const {
                ? doubt(trial)
                : "runs left out are predicted no better with it";
   }
-  // An uncalibrated model may leave outlier blocks: then the gain of the geometric mean counts, too.
-  const bool from_scratch = limits_.healthy_squares <= limits_.noise_squares;
-  const double gain = from_scratch ? std::max(c.gain, c.usual_gain) : c.gain;
+  const double gain = gain_of(trial);
   if (gain <= 0.0) return "runs left out are predicted no better with it";
   if (trial.share_of_rest <= 0.0) return "what is left is no more than models that are in order leave";
-  const double amplitude = std::sqrt(gain);
-  const double beginning =
-      std::max(0.0, base_extension_.held_out_squares() / fit_.blocks().all_samples() - limits_.noise_squares);
   if (c.deviations < (trial.on_trial ? options_.deviations_on_trial : options_.least_deviations)) {
     return fmt::format("its gain on runs left out is only {:.1f} of its deviations", c.deviations);
   }
   if (c.folds_won < options_.least_folds_won)
     return fmt::format("better in only {:.0f} % of the folds", 100.0 * c.folds_won);
-  if (amplitude < limits_.of_noise * std::sqrt(limits_.noise_squares))
+  if (std::sqrt(gain) < limits_.of_noise * std::sqrt(limits_.noise_squares))
     return "what it explains is small beside the noise";
-  // A second effect that only mends the first one's form leaves a rest itself, or mends what a verdict forgives.
-  const double least = std::pow(limits_.of_beginning, 2), usual = usual_rest(base_extension_);
-  const bool few_blocks = beginning > options_.mean_of_few_blocks * usual && c.usual_gain >= least * usual;
-  const bool all = trial.clearly_best && trial.share_of_rest >= options_.all_of_rest &&
-                   c.deviations >= options_.all_of_rest_deviations;
-  const bool counts = all || (trial.missed_alone && (few_blocks || trial.share_of_rest >= options_.nearly_all_of_rest));
-  if (gain < least * beginning && !counts && !trial.on_trial)
-    return "what it explains is small against the initial residual";
+  if (!trial.on_trial && is_small(trial)) return kSmall;
   if (trial.share_of_rest < limits_.of_rest) {
     return fmt::format("it explains {:.0f} % of what is left: model-form errors of other effects can explain as much",
                        100.0 * trial.share_of_rest);

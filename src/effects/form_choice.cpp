@@ -103,7 +103,7 @@ Extension in_best_form(const ExtensionFits& fits, const Extension& current, cons
   std::vector<OpenForm>& open = found.open_forms[effect_name];
   open.clear();
   for (const auto& [form, other] : tried) {
-    if (form == chosen->first) continue;
+    if (form == chosen->first || is_nested(effect_name, found.forms, effect_name, other.forms)) continue;
     const SeenSeparation seen =
         seen_separation(fits.fit(), found.fitted.model, other.fitted.model, found.held_out.mean(),
                         other.held_out.mean(), limits.apart.noise_squares, limits.apart.visible_share);

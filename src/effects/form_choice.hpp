@@ -28,7 +28,8 @@ struct FormLimits {
 /// (extension, a screen of the same without one of its effects) => (extension with the effect in its best form, and the
 /// forms that do as well in open_forms). Each other form takes the place of the present one, is fitted from its own
 /// best start, and is compared on blocks left out. The simplest form (the earliest in the catalogue) stands unless
-/// another is better by better_deviations. Costs up to one fit and its folds for each form that these recordings can
+/// another is better by better_deviations. A form that has every number of the chosen one, and more, is not open
+/// beside it. Costs up to one fit and its folds for each form that these recordings can
 /// have.
 Extension in_best_form(const ExtensionFits& fits, const Extension& current, const StartScreen& without,
                        const std::string& effect, const FormLimits& limits);

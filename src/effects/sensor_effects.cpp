@@ -22,6 +22,12 @@ Values waves(const StartsFrom& from, double amplitude, double periods, double hi
 }
 
 Values waves_of_torque(const StartsFrom& from) { return waves(from, 0.1 * from.scale.torque_Nm, 0.25, 64.0); }
+Values waves_of_two(const StartsFrom& from) {
+  Values found;
+  for (const std::vector<double>& wave : waves(from, 0.1 * from.scale.torque_Nm, 0.25, 32.0))
+    found.push_back({wave[0], wave[1], wave[2], 0.5 * wave[0], 0.0});
+  return found;
+}
 Values waves_of_share(const StartsFrom& from) { return waves(from, 0.2, 0.5, 32.0); }
 Values waves_of_angle(const StartsFrom& from) { return waves(from, 0.005, 0.5, 32.0); }
 
@@ -75,7 +81,11 @@ std::vector<Effect> sensor_effects() {
                      "Jahns, Soong 1996", waves_of_torque),
                  law("current", "in proportion to the drive's torque",
                      {"ripple.torque_share", "ripple.order", "ripple.phase_rad"}, "Holtz, Springob 1996",
-                     waves_of_share)},
+                     waves_of_share),
+                 law("two_harmonics", "with a second harmonic",
+                     {"ripple.amplitude_Nm", "ripple.order", "ripple.phase_rad", "ripple.second_Nm",
+                      "ripple.second_phase_rad"},
+                     "Zhu, Howe 2000", waves_of_two)},
        .shows = "misses with the joint's angle, several times a turn",
        .needs = "slow motion over a large part of a turn",
        .workshop = {"a torque that repeats several times per turn",

@@ -87,11 +87,11 @@ void StartScreen::screen(const Effect& effect, const Form& form, const std::vect
   if (there.empty()) return;
   refit_linearly(there, form, start);
   if (std::isfinite(start.squares)) into.push_back(start);
-  if (values.size() == 1 || effect.name == "load") line_search(form, values, there, into);
+  if (values.size() == 1 || effect.name == "load" || effect.name == "offset") line_search(form, values, there, into);
 }
 
 /// Line search on the linear model r0 + s (r - r0) from the model without the effect: s = -(r - r0).r0 / |r - r0|^2,
-/// within 0..3. For the load's effect and effects of one parameter, in which rollouts are nearly linear.
+/// within 0..3. For loads, constant torques and effects of one parameter, in which rollouts are nearly linear.
 void StartScreen::line_search(const Form& form, const std::vector<double>& values, const fitting::Residuals& there,
                               std::vector<ScreenedStart>& into) const {
   double along = 0.0, across = 0.0;

@@ -107,6 +107,8 @@ Usual usual(Quantity quantity, const BenchScale& scale) {
       return {damping, damping, 10.0 * damping};
     case kQuadraticDamping:
       return {quadratic, quadratic, 10.0 * quadratic};
+    case kSpringRate:
+      return {torque, torque, 5.0 * peak, -5.0 * peak};
     case kPerTorque:
       return {0.3 / torque, 1.0 / peak};
     case kPerHeat:

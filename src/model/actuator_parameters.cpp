@@ -38,6 +38,7 @@ constexpr std::array kQuantities = {
     QuantityRow{kDamping, "Nm s/rad", 100.0, true},
     QuantityRow{kQuadraticDamping, "Nm s^2/rad^2", 100.0, true},
     QuantityRow{kStiffness, "Nm/rad", 100.0, true},
+    QuantityRow{kSpringRate, "Nm/rad", 100.0, true},
     QuantityRow{kHardening, "Nm/rad^3", 100.0, true},
     QuantityRow{kTorquePerOutput, "Nm/unit", 100.0, true},
     QuantityRow{kInertia, "kg m^2", 1000.0, true},

@@ -147,13 +147,17 @@ struct ActuatorParameters {
   } thermal;
 
   /// Torque that depends on the angle, plus a constant:
-  ///   (amplitude + torque_share drive's torque) sin(order q + phase) + offset.
+  ///   (amplitude + torque_share drive's torque) sin(order q + phase) + second sin(2 order q + second_phase) + offset
+  ///   - spring q.
   struct Ripple {
     double amplitude_Nm = 0.0;
     double torque_share = 0.0;  ///< the torque constant differs with the angle: ripple in proportion to the current
     double order = 1.0;
     double phase_rad = 0.0;
+    double second_Nm = 0.0;  ///< amplitude of the second harmonic, at twice the order
+    double second_phase_rad = 0.0;
     double offset_Nm = 0.0;
+    double spring_Nm_per_rad = 0.0;  ///< a spring between joint and frame; its preload is the offset
     bool operator==(const Ripple&) const = default;
   } ripple;
 
@@ -180,7 +184,8 @@ enum class Quantity {
   kTorque,
   kDamping,
   kQuadraticDamping,
-  kStiffness,
+  kStiffness,   ///< of what transmits torque
+  kSpringRate,  ///< of what pulls the joint to one place
   kHardening,
   kTorquePerOutput,
   kInertia,
@@ -314,7 +319,10 @@ inline constexpr auto kActuatorParameters = [] {
       PMG_ACTUATOR_PARAMETER(ripple, torque_share, kFactor, 0.0, 0.9, kNotNegative, 0.3),
       PMG_ACTUATOR_PARAMETER(ripple, order, kOrder, 1.0, 64.0, kNotNegative, 12.0),
       PMG_ACTUATOR_PARAMETER(ripple, phase_rad, kPhase, -3.15, 3.15, kAny, 0.4),
+      PMG_ACTUATOR_PARAMETER(ripple, second_Nm, kTorque, 0.0, 2.0, kNotNegative, 0.2),
+      PMG_ACTUATOR_PARAMETER(ripple, second_phase_rad, kPhase, -3.15, 3.15, kAny, -0.5),
       PMG_ACTUATOR_PARAMETER(ripple, offset_Nm, kTorque, -5.0, 5.0, kAny, 1.0),
+      PMG_ACTUATOR_PARAMETER(ripple, spring_Nm_per_rad, kSpringRate, -2.0, 2.0, kAny, 1.0),
   };
 }();
 #undef PMG_ACTUATOR_PARAMETER

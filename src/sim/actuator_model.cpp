@@ -130,12 +130,16 @@ TorqueLine ActuatorModel::drive(const ActuatorInput& input, double q_rad, double
   return driven;
 }
 
-/// offset + (amplitude + torque_share driven) sin(order q + phase).
+/// offset + (amplitude + torque_share driven) sin(order q + phase) + second sin(2 order q + second_phase) -
+/// spring q.
 TorqueLine ActuatorModel::ripple(double motor_rad, const TorqueLine& driven) const noexcept {
   const model::ActuatorParameters::Ripple& p = parameters_.ripple;
-  if (p.amplitude_Nm == 0.0 && p.torque_share == 0.0) return {p.offset_Nm, 0.0};
+  const double still_Nm = p.offset_Nm - p.spring_Nm_per_rad * motor_rad;
+  if (p.amplitude_Nm == 0.0 && p.torque_share == 0.0 && p.second_Nm == 0.0) return {still_Nm, 0.0};
   const double wave = std::sin(p.order * motor_rad + p.phase_rad);
-  return {p.offset_Nm + (p.amplitude_Nm + p.torque_share * driven.torque_Nm) * wave,
+  const double second_Nm =
+      p.second_Nm == 0.0 ? 0.0 : p.second_Nm * std::sin(2.0 * p.order * motor_rad + p.second_phase_rad);
+  return {still_Nm + (p.amplitude_Nm + p.torque_share * driven.torque_Nm) * wave + second_Nm,
           p.torque_share * driven.slope_Nm_s_per_rad * wave};
 }
 

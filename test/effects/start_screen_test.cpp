@@ -60,6 +60,14 @@ const Wave kWaves[] = {
        p.sensor.eccentricity_rad = 0.03;
        p.sensor.eccentricity_phase_rad = 2.0;
      }},
+    {"cogging", "two_harmonics",
+     [](auto& p) {
+       p.ripple.amplitude_Nm = 0.3;
+       p.ripple.order = 7.0;
+       p.ripple.phase_rad = 0.7;
+       p.ripple.second_Nm = 0.2;
+       p.ripple.second_phase_rad = -1.2;
+     }},
     {"eccentricity", "ellipse",
      [](auto& p) {
        p.sensor.eccentricity_rad = 0.03;

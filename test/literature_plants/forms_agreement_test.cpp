@@ -150,6 +150,20 @@ std::vector<Pair> pairs() {
          m.ripple.cogging_order = p.ripple.order = 7.0;
          m.ripple.cogging_phase_rad = p.ripple.phase_rad = 0.8;
        }},
+      {"RippleWithASecondHarmonic", "ripple.second_Nm",
+       [](auto& m, auto& p) {
+         m.ripple.cogging_Nm = p.ripple.amplitude_Nm = 0.3;
+         m.ripple.cogging_order = p.ripple.order = 7.0;
+         m.ripple.cogging_phase_rad = p.ripple.phase_rad = 0.8;
+         m.ripple.second_share = 0.6;
+         p.ripple.second_Nm = 0.6 * 0.3;
+         p.ripple.second_phase_rad = 2.0 * 0.8 + 1.0;
+       }},
+      {"SpringWithPreload", "ripple.spring_Nm_per_rad",
+       [](auto& m, auto& p) {
+         m.ripple.offset_Nm = p.ripple.offset_Nm = 0.3;
+         m.ripple.preload_Nm_per_rad = p.ripple.spring_Nm_per_rad = 0.8;
+       }},
       {"DiscOnTheMotorsShaft", "sensor.eccentricity_order",
        [](auto& m, auto& p) {
          m.sensor.eccentricity_rad = p.sensor.eccentricity_rad = 0.01;

@@ -42,7 +42,8 @@ const std::vector<Form> kOffset = {
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
        m.ripple.offset_Nm = draw.sign() * draw.spread(0.06, 0.3) * rig.scale_Nm();
        m.ripple.preload_Nm_per_rad = std::abs(m.ripple.offset_Nm) / draw.uniform(2.5, 5.0);
-       return {};
+       return {{"ripple.offset_Nm", kIs, m.ripple.offset_Nm},
+               {"ripple.spring_Nm_per_rad", kIs, m.ripple.preload_Nm_per_rad}};
      }},
     {"offset", "of the current sensor: only while the drive is on", "Chung, Sul 1998", kOwnDrive,
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {
@@ -123,7 +124,9 @@ const std::vector<Form> kCogging = {
        cogging(draw, rig, m);
        m.ripple.cogging_Nm *= 0.8;
        m.ripple.second_share = draw.uniform(0.4, 0.9);
-       return {};
+       return {{"ripple.amplitude_Nm", kIs, m.ripple.cogging_Nm},
+               {"ripple.order", kIs, m.ripple.cogging_order},
+               {"ripple.second_Nm", kIs, m.ripple.second_share * m.ripple.cogging_Nm}};
      }},
     {"cogging", "in proportion to the current", "Holtz, Springob 1996", kWeight,
      [](Draw& draw, const Rig& rig, Machine& m) -> Planted {

@@ -163,6 +163,32 @@ TEST(ActuatorDrive, RipplesInProportionToItsTorque) {
   }
 }
 
+TEST(ActuatorDrive, RipplesTwiceAsOftenBySecondHarmonic) {
+  const auto parameters = with([](auto& p) {
+    p.ripple.order = 5.0;
+    p.ripple.second_Nm = 0.3;
+    p.ripple.second_phase_rad = 0.4;
+  });
+  for (const double q_rad : {0.0, 0.3, -1.1}) {
+    sim::ActuatorModel actuator(parameters, kActuatorStep_s);
+    actuator.reset(q_rad);
+    EXPECT_NEAR(actuator.step({.feed_forward_Nm = 2.0}, q_rad, 1.0).torque_Nm, 2.0 + 0.3 * std::sin(10.0 * q_rad + 0.4),
+                1e-12);
+  }
+}
+
+TEST(ActuatorDrive, ASpringPullsToWhereItsPreloadIsZero) {
+  const auto parameters = with([](auto& p) {
+    p.ripple.offset_Nm = 0.6;
+    p.ripple.spring_Nm_per_rad = 1.5;
+  });
+  for (const double q_rad : {0.0, 0.4, -1.1}) {
+    sim::ActuatorModel actuator(parameters, kActuatorStep_s);
+    actuator.reset(q_rad);
+    EXPECT_NEAR(actuator.step({.feed_forward_Nm = 2.0}, q_rad, 1.0).torque_Nm, 2.0 - 1.5 * (q_rad - 0.4), 1e-12);
+  }
+}
+
 TEST(ActuatorDrive, NeverDrivesWithMoreThanItsPower) {
   const double most_W = 20.0;
   const auto parameters = with([&](auto& p) { p.drive.most_power_W = most_W; });

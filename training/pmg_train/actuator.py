@@ -37,7 +37,7 @@ class ActuatorModel:
         self.turns = torch.where(self.elastic, p["sensor.on_motor"], 0.0)
         self.rubs_on_joint, self.sensor_turns = bool((self.on_joint > 0).any()), bool((self.turns > 0).any())
         self.by_load = has(p, "friction.load_driving", "friction.load_backdriving")
-        self.ripples = has(p, "ripple.amplitude_Nm", "ripple.torque_share", "ripple.offset_Nm")
+        self.ripples = has(p, "ripple.amplitude_Nm", "ripple.torque_share", "ripple.second_Nm", "ripple.offset_Nm", "ripple.spring_Nm_per_rad")
         self.other_load = has(p, "friction.load_by_motor", "friction.load_net")
         self.load = states.new("load")
         self.given_torque, self.given_slope, self.given_at = (states.new(f"given_{name}") for name in ("torque", "slope", "at"))
@@ -89,6 +89,8 @@ class ActuatorModel:
             motor, motor_slope = motor + turned.torque, motor_slope + turned.slope
         if self.ripples:
             wave = torch.sin(p["ripple.order"] * angle + p["ripple.phase_rad"])
+            motor = motor + p["ripple.second_Nm"] * torch.sin(2 * p["ripple.order"] * angle + p["ripple.second_phase_rad"])
+            motor = motor - p["ripple.spring_Nm_per_rad"] * angle
             motor = motor + p["ripple.offset_Nm"] + (p["ripple.amplitude_Nm"] + p["ripple.torque_share"] * driven) * wave
             motor_slope = motor_slope + p["ripple.torque_share"] * driven_slope * wave
         load = self._friction_load(motor, external_Nm)
