@@ -8,11 +8,13 @@
 #include "data_faults/commanded_torque_check.hpp"
 #include "data_faults/frozen_readings_check.hpp"
 #include "data_faults/position_checks.hpp"
+#include "data_faults/quick_model.hpp"
 #include "data_faults/repeat_checks.hpp"
 #include "data_faults/run_checks.hpp"
 #include "data_faults/shared_checks.hpp"
 #include "data_faults/shift_checks.hpp"
 #include "data_faults/trajectory_checks.hpp"
+#include "fitting/statistics.hpp"
 
 namespace pmg::data_faults {
 
@@ -126,6 +128,29 @@ std::vector<DataFault> find_shared_faults(const bench::Bench& bench, const std::
   return found;
 }
 
+std::vector<DataFault> upheld(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
+                              const std::vector<DataFault>& faults, const calib::JointModel& model, unsigned threads) {
+  const QuickModel quick(bench, model.actuator, threads);
+  std::vector<DataFault> kept;
+  for (std::size_t f = 0; f < faults.size(); ++f) {
+    const DataFault& fault = faults[f];
+    const bool judged = (fault.kind == Kind::kGainFactor || fault.kind == Kind::kMass) && !fault.files.empty();
+    if (judged) {
+      std::vector<DataFault> others = faults;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(f));
+      std::vector<bench::BenchRun> touched = runs;
+      std::erase_if(touched,
+                    [&](const auto& run) { return std::ranges::find(fault.files, run.file) == fault.files.end(); });
+      const auto log_error = [&](const std::vector<DataFault>& fixed) {
+        return fitting::median(quick.log_errors(quick.joints(corrected(touched, fixed)), model));
+      };
+      if (log_error(others) <= log_error(faults)) continue;
+    }
+    kept.push_back(fault);
+  }
+  return kept;
+}
+
 std::vector<DataFault> of_used_columns(std::vector<DataFault> faults, const std::vector<bench::Column>& unused) {
   const auto is_unused = [&](const bench::Correction& fix) {
     return !fix.columns.empty() && std::ranges::all_of(fix.columns, [&](bench::Column column) {
@@ -154,13 +179,13 @@ Examination examine(const bench::Bench& bench, const std::vector<std::string>& f
   return found;
 }
 
-Examination examine_again(const bench::Bench& bench, const std::vector<std::string>& filters, const Examination& first,
-                          const calib::JointModel& model, unsigned threads) {
+std::optional<Examination> examine_again(const bench::Bench& bench, const std::vector<std::string>& filters,
+                                         const Examination& first, const calib::JointModel& model, unsigned threads) {
   const FilteredRuns read = read_groups(in_any_unit(bench), filters);
-  std::vector<DataFault> faults = first.faults;
+  std::vector<DataFault> faults = upheld(bench, read.runs, first.faults, model, threads);
   const std::vector<DataFault> more =
-      find_shared_faults(bench, corrected(read.runs, first.faults), model, first.options, threads);
-  if (more.empty()) return first;
+      find_shared_faults(bench, corrected(read.runs, faults), model, first.options, threads);
+  if (more.empty() && faults.size() == first.faults.size()) return std::nullopt;
   faults.insert(faults.end(), more.begin(), more.end());
   Examination found = examination(std::move(faults), read.runs, first.handling, read.groups);
   found.other_units = first.other_units;

@@ -56,6 +56,12 @@ std::vector<DataFault> find_shared_faults(const bench::Bench& bench, const std::
                                           const calib::JointModel& model, const DataFaultOptions& options,
                                           unsigned threads);
 
+/// (bench, its runs as they are, faults in the order of their corrections, the model that a diagnosis left) => (faults
+/// without the loads and gains whose runs this model predicts no worse as they are written). A joint that gives way or
+/// swings looked as if a number were wrong.
+std::vector<DataFault> upheld(const bench::Bench& bench, const std::vector<bench::BenchRun>& runs,
+                              const std::vector<DataFault>& faults, const calib::JointModel& model, unsigned threads);
+
 /// Without the faults that are in unused columns alone.
 std::vector<DataFault> of_used_columns(std::vector<DataFault> faults, const std::vector<bench::Column>& unused);
 
@@ -65,10 +71,10 @@ Examination examine(const bench::Bench& bench, const std::vector<std::string>& f
                     const std::optional<model::ActuatorParameters>& model, const ExamineOptions& options,
                     unsigned threads, const work::Progress& progress = {});
 
-/// (bench, filters of runs.csv, first examination, the model that a diagnosis of the rest left) => (examination with
-/// what find_shared_faults finds besides).
-Examination examine_again(const bench::Bench& bench, const std::vector<std::string>& filters, const Examination& first,
-                          const calib::JointModel& model, unsigned threads);
+/// (bench, filters of runs.csv, first examination, the model that a diagnosis of the rest left) => (examination without
+/// the faults that are not upheld(), and with what find_shared_faults finds besides; nothing if that is the same).
+std::optional<Examination> examine_again(const bench::Bench& bench, const std::vector<std::string>& filters,
+                                         const Examination& first, const calib::JointModel& model, unsigned threads);
 
 /// (faults, runs, handling, groups of files) => (what the diagnosis goes on with). A fault's runs are left out as long
 /// as half of all runs stay, and one of each group: the runs that are fitted, and those that are scored. Faults whose

@@ -278,8 +278,12 @@ class JointDiagnosisRun {
     const double rest = rest_squares_, beginning = search.usual_rest(search.base());
     diagnosis_.before_over_noise = std::sqrt(1.0 + beginning / noise);
     diagnosis_.after_over_noise = std::sqrt(1.0 + rest / noise);
-    const bool remains = (rest > (by_.remains_of_noise - 1.0) * noise && rest > by_.remains_of_beginning * beginning) ||
-                         misses_the_motion();
+    const auto leaves = [&](double of_noise, double of_beginning) {
+      return rest > (of_noise - 1.0) * noise && rest > of_beginning * beginning;
+    };
+    const bool remains =
+        leaves(by_.remains_of_noise, by_.remains_of_beginning) || misses_the_motion() ||
+        (!diagnosis_.causes.empty() && leaves(by_.causes_leave_of_noise, by_.causes_leave_of_beginning));
     if (remains) {
       diagnosis_.depends_on = significant_dependences(
           residual_samples(bench_, of_assemblies.runs(), diagnosis_.after, options_.threads, by_.signatures.step));
@@ -339,12 +343,13 @@ Diagnosis diagnose(const bench::Bench& bench, const DiagnoseOptions& options, Di
                                  return stopped.load();
                                }};
   Diagnosis found = JointDiagnosisRun(data_faults::examined_bench(bench, data), options, lasting).run(runs);
-  // A wrong mass or gain shows beside a model that misses little.
+  // A wrong mass or gain shows beside a model that misses little, and so does one that only seemed wrong.
   if (!found.causes.empty() && !lasting.interrupted_now()) {
-    const std::size_t known = data.faults.size();
-    data = data_faults::examine_again(bench, filters, data, found.after, options.threads);
-    if (data.faults.size() > known && !data.uncorrected())
-      found = JointDiagnosisRun(data_faults::examined_bench(bench, data), options, lasting).run(runs);
+    if (auto again = data_faults::examine_again(bench, filters, data, found.after, options.threads)) {
+      data = *std::move(again);
+      if (!data.uncorrected())
+        found = JointDiagnosisRun(data_faults::examined_bench(bench, data), options, lasting).run(runs);
+    }
   }
   found.data = data;
   return found;

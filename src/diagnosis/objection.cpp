@@ -112,7 +112,7 @@ std::string EffectSearch::objection(const Trial& trial) const {
   if (c.deviations < (trial.on_trial ? options_.deviations_on_trial : options_.least_deviations)) {
     return fmt::format("its gain on runs left out is only {:.1f} of its deviations", c.deviations);
   }
-  if (c.folds_won < options_.least_folds_won)
+  if (!trial.on_trial && c.folds_won < options_.least_folds_won)
     return fmt::format("better in only {:.0f} % of the folds", 100.0 * c.folds_won);
   if (std::sqrt(gain) < limits_.of_noise * std::sqrt(limits_.noise_squares))
     return "what it explains is small beside the noise";

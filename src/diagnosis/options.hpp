@@ -104,7 +104,15 @@ struct JointDiagnosisOptions {
                                    "a residual of less than so many times the noise's mean square is not called "
                                    "unexplained: loads are weighed to a percent, friction changes from day to day",
                                    "hidden plants: of those without a cause sound joints leave at most 4.8"};
-  work::Threshold remains_of_beginning{0.1, "", "nor is one of less than this share of the beginning", kPlants};
+  work::Threshold remains_of_beginning{
+      0.03, "", "nor is one of less than this share of the beginning: an effect's form isn't quite the catalogue's",
+      "hidden plants, used odd seeds: causes that are right leave at most 2 % of what is strong"};
+  work::Threshold causes_leave_of_noise{3.0, "",
+                                        "causes that leave more than so many times the noise's mean square, and more "
+                                        "than causes_leave_of_beginning, explain nothing: the verdict is unexplained",
+                                        "hidden plants, used odd seeds: sound joints leave as much, without a cause"};
+  work::Threshold causes_leave_of_beginning{0.25, "", "this share of the beginning",
+                                            "hidden plants, used odd seeds: right causes leave at most 0.17 of it"};
   // When the readings alone decide.
   work::Threshold coarser_quantum{
       1.5, "",
@@ -171,12 +179,13 @@ struct JointDiagnosisOptions {
                  nearly_all_of_rest, all_of_rest, all_of_rest_deviations, deviations_on_trial, worse_deviations,
                  one_torque, equal_gain, clearly_deviations, regained_share, stays_at_half_step, most_effects,
                  apart_deviations, apart_share, fewest_apart_blocks, visible_share, better_form_deviations,
-                 hopeless_form_deviations, remains_of_noise, remains_of_beginning, coarser_quantum, quantum_of_noise,
-                 gain_tolerance, damping_tolerance, friction_tolerance, load_tolerance, deviation_of_tolerance,
-                 constant_gain_of_rest, stiffer_presliding, softer_presliding, intervals, enough_deviations,
-                 most_asked_runs, most_asked_recordings, searched_runs, fitted_effects, exchanged_effects, fitted_pairs,
-                 finished_pairs, finished_effects, worth_finishing, worth_fitting_form, few_iterations, many_iterations,
-                 settled_squares, assembly, odd_runs, step, signatures, extension)
+                 hopeless_form_deviations, remains_of_noise, remains_of_beginning, causes_leave_of_noise,
+                 causes_leave_of_beginning, coarser_quantum, quantum_of_noise, gain_tolerance, damping_tolerance,
+                 friction_tolerance, load_tolerance, deviation_of_tolerance, constant_gain_of_rest, stiffer_presliding,
+                 softer_presliding, intervals, enough_deviations, most_asked_runs, most_asked_recordings, searched_runs,
+                 fitted_effects, exchanged_effects, fitted_pairs, finished_pairs, finished_effects, worth_finishing,
+                 worth_fitting_form, few_iterations, many_iterations, settled_squares, assembly, odd_runs, step,
+                 signatures, extension)
 };
 
 /// Every row of both by its name for --set: a joint's as they are, the data's as "data_faults.NAME".

@@ -10,6 +10,7 @@
 #include "calib/joint_runs.hpp"
 #include "calib/unknown.hpp"
 #include "effects/period.hpp"
+#include "effects/strengths.hpp"
 #include "effects/zero_slip.hpp"
 #include "fitting/covariance.hpp"
 
@@ -18,6 +19,7 @@ namespace pmg::effects {
 namespace {
 
 constexpr std::size_t kMostStarts = 4;
+constexpr double kDamping = 1e-3;
 constexpr double kMayBeWorth = 1.0 / 3.0;   // of a form's worth: a start that is off may explain so little
 constexpr std::size_t kRunsForOrders = 5;   // a hundred orders of a wave are screened on so many runs first
 constexpr std::size_t kRunsForAThird = 16;  // with more, a third start costs more than it finds
@@ -71,7 +73,7 @@ void StartScreen::refit_linearly(const fitting::Residuals& residuals, const Form
   if (!std::isfinite(start.squares) || current_.coordinates.size() == 0) return;
   const Eigen::VectorXd gradient = fitting::products(jacobian_.of_run, residuals);
   const Eigen::VectorXd step =
-      fitting::bounded_step(information_, gradient, current_.ranges, current_.coordinates, 1e-3);
+      fitting::bounded_step(information_, gradient, current_.ranges, current_.coordinates, kDamping);
   start.squares = std::max(0.0, start.squares + 2.0 * gradient.dot(step) + step.dot(information_ * step));
   for (Eigen::Index i = 0; i < step.size(); ++i) {
     const calib::Unknown& u = current_.unknowns[static_cast<std::size_t>(i)];
@@ -87,33 +89,48 @@ void StartScreen::screen(const Effect& effect, const Form& form, const std::vect
   if (there.empty()) return;
   refit_linearly(there, form, start);
   if (std::isfinite(start.squares)) into.push_back(start);
-  if (values.size() == 1 || effect.name == "load" || effect.name == "offset") line_search(form, values, there, into);
+  scale_strengths(effect, form, values, there, into);
 }
 
-/// Line search on the linear model r0 + s (r - r0) from the model without the effect: s = -(r - r0).r0 / |r - r0|^2,
-/// within 0..3. For loads, constant torques and effects of one parameter, in which rollouts are nearly linear.
-void StartScreen::line_search(const Form& form, const std::vector<double>& values, const fitting::Residuals& there,
-                              std::vector<ScreenedStart>& into) const {
-  double along = 0.0, across = 0.0;
-  for (std::size_t i = 0; i < there.size(); ++i) {
-    const Eigen::VectorXd direction = there[i] - residuals_[i];
-    along -= direction.dot(residuals_[i]);
-    across += direction.squaredNorm();
+/// The start with its strengths scaled: the share s of 0..3 that is best on the linear model r0 + s (r - r0), with r0
+/// from the model without the effect, while the other unknowns follow. For forms that are linear in what is scaled: of
+/// one strength, loads and constant torques. The strengths must be finite without the effect.
+void StartScreen::scale_strengths(const Effect& effect, const Form& form, const std::vector<double>& values,
+                                  const fitting::Residuals& there, std::vector<ScreenedStart>& into) const {
+  constexpr double kLeast = 0.02, kMost = 3.0;
+  const std::vector<std::string> scaled = strengths(effect, form);
+  if (scaled.size() != 1 && effect.name != "load" && effect.name != "offset") return;
+  fitting::Residuals direction = there;
+  for (std::size_t i = 0; i < there.size(); ++i) direction[i] -= residuals_[i];
+  const Eigen::Index others = current_.coordinates.size();
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(others + 1, others + 1);
+  Eigen::VectorXd gradient(others + 1), from = Eigen::VectorXd::Zero(others + 1);
+  information(others, others) = dot(direction, direction);
+  gradient[others] = dot(direction, residuals_);
+  if (!(information(others, others) > 0.0)) return;
+  fitting::Coordinates ranges = current_.ranges;
+  ranges.push_back({.lower = 0.0, .upper = kMost});
+  if (others > 0) {
+    information.topLeftCorner(others, others) = information_;
+    information.col(others).head(others) = fitting::products(jacobian_.of_run, direction);
+    information.row(others).head(others) = information.col(others).head(others).transpose();
+    gradient.head(others) = fitting::products(jacobian_.of_run, residuals_);
+    from.head(others) = current_.coordinates;
   }
-  if (!(across > 0.0)) return;
-  const double share = std::clamp(along / across, 0.0, 3.0);
-  if (share < 0.02) return;
-  std::vector<double> moved_values;
+  const double share = fitting::bounded_step(information, gradient, ranges, from, kDamping)[others];
+  if (share < kLeast) return;
+  std::vector<double> scaled_values = values;
   for (std::size_t p = 0; p < values.size(); ++p) {
-    const double from = calib::value(current_.model, form.parameters[p]);
-    if (!std::isfinite(from)) return;
-    moved_values.push_back(from + share * (values[p] - from));
+    if (!contains(scaled, form.parameters[p])) continue;
+    const double none = calib::value(current_.model, form.parameters[p]);
+    if (!std::isfinite(none)) return;
+    scaled_values[p] = none + share * (values[p] - none);
   }
-  ScreenedStart scaled{with(form, moved_values), 0.0};
-  fitting::Residuals moved = there;
-  for (std::size_t i = 0; i < there.size(); ++i) moved[i] = residuals_[i] + share * (there[i] - residuals_[i]);
-  refit_linearly(moved, form, scaled);
-  if (std::isfinite(scaled.squares)) into.push_back(scaled);
+  ScreenedStart start{with(form, scaled_values), 0.0};
+  fitting::Residuals moved = residuals_;
+  for (std::size_t i = 0; i < there.size(); ++i) moved[i] += share * direction[i];
+  refit_linearly(moved, form, start);
+  if (std::isfinite(start.squares)) into.push_back(start);
 }
 
 /// The response to small waves over the joint's angle is linear in their sine and cosine parts: two rollouts for each

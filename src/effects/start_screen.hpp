@@ -44,8 +44,8 @@ class StartScreen {
   struct OfFewRuns;
   void screen(const Effect& effect, const Form& form, const std::vector<double>& values,
               std::vector<ScreenedStart>& into) const;
-  void line_search(const Form& form, const std::vector<double>& values, const fitting::Residuals& there,
-                   std::vector<ScreenedStart>& into) const;
+  void scale_strengths(const Effect& effect, const Form& form, const std::vector<double>& values,
+                       const fitting::Residuals& there, std::vector<ScreenedStart>& into) const;
   void screen_slips(const Form& form, const std::vector<double>& values, std::vector<ScreenedStart>& into) const;
   void screen_waves(const Form& form, const std::vector<double>& values, std::vector<ScreenedStart>& into) const;
   static std::vector<double> values_of(const ScreenedStart& start, const Form& form);

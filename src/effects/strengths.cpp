@@ -24,14 +24,18 @@ Eigen::VectorXd from_neutral(const NestedModel& model, const Forms& forms, const
 
 }  // namespace
 
-std::vector<std::string> strengths(const std::string& effect_name, const Forms& forms) {
-  std::vector<std::string> found = form_of(effect_name, forms).parameters;
+std::vector<std::string> strengths(const Effect& effect, const Form& form) {
+  std::vector<std::string> found = form.parameters;
   std::erase_if(found, [&](const std::string& name) {
     const model::Quantity quantity = calib::quantity(name);
     return quantity == model::Quantity::kOrder || quantity == model::Quantity::kPhase ||
-           quantity == model::Quantity::kTimeConstant || contains(effect(effect_name).shapes, name);
+           quantity == model::Quantity::kTimeConstant || contains(effect.shapes, name);
   });
   return found;
+}
+
+std::vector<std::string> strengths(const std::string& name, const Forms& forms) {
+  return strengths(effect(name), form_of(name, forms));
 }
 
 std::vector<double> measured_strength(const evidence::Signature& check, const model::ActuatorParameters& joint,

@@ -11,6 +11,7 @@ namespace pmg::effects {
 
 /// The parameters of an effect's form that are neutral without it. Not its shape: a speed, an order, a phase, a
 /// damping.
+std::vector<std::string> strengths(const Effect& effect, const Form& form);
 std::vector<std::string> strengths(const std::string& effect, const Forms& forms);
 
 /// (check, joint without the effect, fastest speed [rad/s]) => (values of the effect's parameters in the catalogue's

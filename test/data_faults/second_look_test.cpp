@@ -80,6 +80,23 @@ TEST_P(SecondLook, NamesTheGainThatIsWrong) {
   }
 }
 
+TEST_P(SecondLook, WithdrawsAWrongGainThatTheModelDoesNotNeed) {
+  for (const bool is_wrong : {false, true}) {
+    test::RandomBench made = bench_with(GetParam(), 1);
+    const double kp = made.runs[1].kp;
+    DataFault fault{.kind = Kind::kGainFactor, .where = "kp", .correction = "kp", .fixes = {{.kp_factor = 1.0 / 0.6}}};
+    for (bench::BenchRun& run : made.runs) {
+      if (run.kp != kp) continue;
+      if (is_wrong) run.kp *= 0.6;
+      fault.files.push_back(run.file);
+    }
+    fault.fixes.front().files = fault.files;
+    EXPECT_EQ(upheld(made.bench, made.runs, {fault}, made.truth, 1).size(), is_wrong ? 1U : 0U);
+    fault.files.clear();  // of all runs: the model's own gain would be as good
+    EXPECT_EQ(upheld(made.bench, made.runs, {fault}, made.truth, 1).size(), 1U);
+  }
+}
+
 /// A preload that the model lacks bears a part of each load: every load wants another factor.
 TEST(SecondLooks, TakeATrendOverLoadsForPhysics) {
   DataFaultOptions easily{};  // however small

@@ -330,12 +330,13 @@ TEST_F(Judged, AnEffectOnTrialStaysWhereItConvincesInTheEnd) {
   EXPECT_EQ(chosen(1e9), (std::set<std::string>{}));
 }
 
-TEST_F(Judged, OnTrialAGainNeedNotBeAsSureNorLargeBesideTheBeginning) {
+TEST_F(Judged, OnTrialAGainNeedNotBeAsSureNorLargeBesideTheBeginningNorInMostFolds) {
   fit_ = &pushed_;
   const EffectSearch at = search({}, 1e9);
   Trial trial = convincing("offset", extension(at, "offset", 0.2));
   trial.share_of_rest = 0.5;
   trial.comparison.deviations = 2.5;
+  trial.comparison.folds_won = 0.5;
   EXPECT_NE(at.objection(trial), "");
   trial.on_trial = true;
   EXPECT_EQ(at.objection(trial), "");

@@ -225,6 +225,26 @@ TEST_F(Rules, UnexplainedMayHaveCausesBeside) {
   EXPECT_TRUE(delay);
 }
 
+TEST_F(Rules, CausesThatLeaveMoreThanAQuarterExplainNothing) {
+  calib::JointModel truth;
+  truth.actuator = healthy_actuator();
+  truth.actuator.command.delay_s = 0.02;
+  const bench::Bench bench = written(on_a_shaking_table(bench_, truth));
+  const auto verdict = [&](const std::string& rule) {
+    DiagnoseOptions options = given_healthy();
+    options.decide_by.remains_of_noise = 1e12;
+    options.decide_by.fitted_effects = options.decide_by.exchanged_effects = 2.0;
+    options.decide_by.fitted_pairs = 0.0;
+    if (!rule.empty()) evidence::set(evidence::rows(options.decide_by), rule);
+    const Diagnosis found = diagnose(bench, options);
+    EXPECT_FALSE(found.causes.empty()) << rule;
+    return found.verdict;
+  };
+  EXPECT_EQ(verdict(""), evidence::Verdict::kUnexplained);
+  EXPECT_NE(verdict("causes_leave_of_noise=1e12"), evidence::Verdict::kUnexplained);
+  EXPECT_NE(verdict("causes_leave_of_beginning=1e12"), evidence::Verdict::kUnexplained);
+}
+
 TEST_F(Rules, UnexplainedSaysWhatTheRestDependsOn) {
   calib::JointModel truth;
   truth.actuator = healthy_actuator();

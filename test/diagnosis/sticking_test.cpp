@@ -113,7 +113,8 @@ TEST_F(TheBaseModel, TakesThePlaceOfAnEffectThatAConstantExplains) {
                             .healthy_squares = 0.0,
                             .of_noise = 0.0,
                             .of_beginning = 0.0,
-                            .of_rest = 0.0};
+                            .of_rest = 0.0,
+                            .recordings_have_step = true};  // the step is no reason to leave
   EffectSearch search(bench_, fit, usual, limits, {}, {}, {});
   const std::vector<Trial> trials = search.additions(search.base());
   ASSERT_FALSE(trials.empty());

@@ -124,5 +124,26 @@ INSTANTIATE_TEST_SUITE_P(
                     Heating{"friction_winding", &model::ActuatorParameters::Thermal::friction_per_Nm2_s, -4.0}),
     [](const auto& one) { return std::string(one.param.form); });
 
+// A fit has made up for part of it with another torque constant. At the grid's strengths the effect only adds to what
+// is left, so it would never be tried.
+TEST(StartScreen, AWeakEffectHasItsStrengthWhileTheOtherNumbersFollow) {
+  const bench::Bench bench = test::pd_bench(true);
+  calib::JointModel truth = smooth_joint();
+  truth.actuator.thermal.torque_fade_share = 0.03;
+  truth.actuator.thermal.torque_fade_s = 1.5;
+  const NestedFit fit(test::record(bench, truth, 4, 1e-4), 1);
+  const BenchScale scale = scale_of(bench, fit.runs(), smooth_joint());
+  const NestedModel current = fit.fit(smooth_joint(), {unknown("drive.kp_scale", bench, scale)}, 10);
+  const Effect& family = effect("self_heating");
+  std::size_t form = 0;
+  while (family.forms.at(form).name != std::string("torque_time")) ++form;
+  const std::vector<ScreenedStart> starts = StartScreen(fit, current).best(family, form, scale);
+  ASSERT_FALSE(starts.empty());
+  EXPECT_LT(starts.front().squares, 0.3 * current.squares) << "it is expected to leave more";
+  EXPECT_LT(fitting::sum_of_squares(fit.residuals(starts.front().model)), 0.3 * current.squares)
+      << "its rollout leaves more";
+  EXPECT_NEAR(starts.front().model.actuator.thermal.torque_fade_share, 0.03, 0.01);
+}
+
 }  // namespace
 }  // namespace pmg::effects
