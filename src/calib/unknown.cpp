@@ -73,12 +73,12 @@ double Unknown::at_share(double share) const {
 
 // The differences are wide: a joint that sticks one sample earlier or later must not dominate the slope. A held command
 // is delayed by whole simulation steps, so a smaller difference of the delay would change nothing.
-fitting::Coordinate Unknown::range() const {
+fitting::Coordinate Unknown::range(double wider) const {
   constexpr double kDelayStep_s = 2.5e-3, kLogarithmStep = 1e-2, kShareOfTypical = 5e-3;
   const double step = difference > 0.0                      ? difference
                       : quantity == model::Quantity::kDelay ? kDelayStep_s
-                      : scale == Scale::kLogarithmic        ? kLogarithmStep
-                                                            : kShareOfTypical * typical;
+                      : scale == Scale::kLogarithmic        ? wider * kLogarithmStep
+                                                            : wider * kShareOfTypical * typical;
   return {coordinate(lower), coordinate(upper), step, expected, deviation};
 }
 
@@ -108,9 +108,9 @@ Eigen::VectorXd coordinates(const Unknowns& unknowns, const JointModel& model) {
   return found;
 }
 
-fitting::Coordinates ranges(const Unknowns& unknowns) {
+fitting::Coordinates ranges(const Unknowns& unknowns, double wider) {
   fitting::Coordinates found;
-  for (const Unknown& u : unknowns) found.push_back(u.range());
+  for (const Unknown& u : unknowns) found.push_back(u.range(wider));
   return found;
 }
 

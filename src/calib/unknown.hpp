@@ -43,7 +43,9 @@ struct Unknown {
   double share(double value) const;       ///< 0..1
   double at_share(double share) const;    ///< the value there
   double slope(double coordinate) const;  ///< d value / d coordinate, on a linear or logarithmic scale
-  fitting::Coordinate range() const;      ///< bounds, difference step and prior of the coordinate
+  /// Bounds, difference step and prior of the coordinate. wider: of the steps of a linear or logarithmic scale, where
+  /// what is compared is coarse.
+  fitting::Coordinate range(double wider = 1.0) const;
   bool operator==(const Unknown&) const = default;
 };
 using Unknowns = std::vector<Unknown>;
@@ -58,7 +60,7 @@ void put(Unknowns& unknowns, const Unknown& unknown);
 JointModel model_at(JointModel model, const Unknowns& unknowns, const Eigen::VectorXd& coordinates);
 /// (unknowns, model) => (their coordinates in the model, clamped into the ranges).
 Eigen::VectorXd coordinates(const Unknowns& unknowns, const JointModel& model);
-fitting::Coordinates ranges(const Unknowns& unknowns);
+fitting::Coordinates ranges(const Unknowns& unknowns, double wider = 1.0);
 
 /// (name of an actuator's or the recordings' parameter, bench) => (the parameter with its range on this rig). Throws
 /// std::invalid_argument that lists the names.

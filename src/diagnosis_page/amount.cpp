@@ -19,6 +19,8 @@ using evidence::Interval;
 using model::Quantity;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
+/// Of what was found: an interval that begins with less is read as "at most".
+constexpr double kHardlyMore = 0.1;
 
 std::string two_digits(double value) {
   return std::abs(value) < 100.0 ? fmt::format("{:.2g}", value) : fmt::format("{:.0f}", value);
@@ -107,7 +109,8 @@ std::string amount(const bench::Bench& bench, const Diagnosis& diagnosis, const 
   std::string text = fmt::format("{}{}{} {}", is_limit(first.name) ? "at most " : "",
                                  is_scale(first.name) && value > 0.0 ? "+" : "", two_digits(value), shown.unit);
   const double without = shown.number(calib::value(diagnosis.before, first.name));
-  if (low < without && without < high)
+  const double nearer = value > without ? low : high;  // the end towards the simulation's value
+  if ((nearer - without) / (value - without) < kHardlyMore)
     text += fmt::format(", at most {}", two_digits(value > without ? high : low));
   else if (std::isfinite(low) && std::isfinite(high) && two_digits(low) != two_digits(high))
     text += fmt::format(", between {} and {}", two_digits(low), two_digits(high));

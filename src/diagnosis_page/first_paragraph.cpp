@@ -31,9 +31,14 @@ std::string listed(const std::vector<std::string>& texts, const char* between, c
   return text;
 }
 
+/// Of its form where the recordings tell it, else of the effect.
+effects::WorkshopWords words_of(const Cause& cause) {
+  return effects::workshop_words(cause.effect, cause.form_or_instead.empty() ? cause.form : "");
+}
+
 /// The cause with its size, and every name that it may have as well.
 std::string with_other_names(const bench::Bench& bench, const Diagnosis& diagnosis, const Cause& cause) {
-  std::vector<std::string> names{effects::workshop_words(cause.effect).what};
+  std::vector<std::string> names{words_of(cause).what};
   if (const std::string size = amount(bench, diagnosis, cause); !size.empty()) names[0] += " (" + size + ")";
   for (const std::string& other : cause.or_instead) names.push_back(effects::workshop_words(other).what);
   for (const std::string& other : cause.same_here) names.push_back(effects::workshop_words(other).what);
@@ -129,7 +134,7 @@ std::string how_sure(const Diagnosis& diagnosis) {
 std::string what_it_costs(const Diagnosis& diagnosis) {
   std::string text;
   for (std::size_t i = 0; i < std::min<std::size_t>(2, diagnosis.causes.size()); ++i) {
-    const std::string cost = effects::workshop_words(diagnosis.causes[i].effect).cost;
+    const std::string cost = words_of(diagnosis.causes[i]).cost;
     if (!cost.empty()) text += (text.empty() ? "" : " ") + cost;
   }
   return text.empty() ? "" : "On the robot: " + text + " ";
@@ -177,7 +182,7 @@ std::string what_next(const Diagnosis& diagnosis) {
     return fmt::format("Next: at the joint there is nothing{} to do.",
                        diagnosis.data.readings_left_out.empty() ? "" : " else");
   if (!diagnosis.causes.empty()) {
-    std::string text = fmt::format("Next: {}", effects::workshop_words(diagnosis.causes.front().effect).check);
+    std::string text = fmt::format("Next: {}", words_of(diagnosis.causes.front()).check);
     if (diagnosis.causes.size() > 1) text += " \"What to check\" has the rest.";
     return text;
   }
@@ -230,15 +235,13 @@ void show_what_to_check(pages::Page& page, const Diagnosis& diagnosis) {
   page.heading("What to check");
   pages::Table table{.header = {"what it may be", "name in the tables below", "check this"}, .rows = {}};
   std::set<std::string> listed;
-  const auto add = [&](const std::string& effect) {
-    if (!listed.insert(effect).second) return;
-    const effects::WorkshopWords words = effects::workshop_words(effect);
-    table.rows.push_back({words.what, effects::title(effect), words.check});
+  const auto add = [&](const std::string& effect, const effects::WorkshopWords& words) {
+    if (listed.insert(effect).second) table.rows.push_back({words.what, effects::title(effect), words.check});
   };
   for (const Cause& cause : diagnosis.causes) {
-    add(cause.effect);
-    for (const std::string& other : cause.or_instead) add(other);
-    for (const std::string& other : cause.same_here) add(other);
+    add(cause.effect, words_of(cause));
+    for (const std::string& other : cause.or_instead) add(other, effects::workshop_words(other));
+    for (const std::string& other : cause.same_here) add(other, effects::workshop_words(other));
   }
   page.table(table);
 }

@@ -27,12 +27,17 @@ const Effect* find(std::string_view name) {
   return found == catalogue().end() ? nullptr : &*found;
 }
 
+/// Nothing for a name that the effect doesn't know.
+const Form* find(const Effect& effect, const std::string& form) {
+  const auto found = std::ranges::find(effect.forms, form, &Form::name);
+  return found == effect.forms.end() ? nullptr : &*found;
+}
+
 /// Empty where the effect has one form only, or doesn't know the name.
 std::string form_title(const std::string& effect, const std::string& form) {
   const Effect* const one = find(effect);
-  if (one == nullptr) return "";
-  const auto found = std::ranges::find(one->forms, form, &Form::name);
-  return found == one->forms.end() ? "" : found->title;
+  const Form* const found = one == nullptr ? nullptr : find(*one, form);
+  return found == nullptr ? "" : found->title;
 }
 
 }  // namespace
@@ -54,9 +59,16 @@ std::string title(const std::string& name) {
   return found == nullptr ? name : found->title;
 }
 
-WorkshopWords workshop_words(const std::string& effect) {
+WorkshopWords workshop_words(const std::string& effect, const std::string& form) {
   const Effect* const found = find(effect);
-  return found == nullptr ? WorkshopWords{effect, "", ""} : found->workshop;
+  if (found == nullptr) return {effect, "", ""};
+  WorkshopWords words = found->workshop;
+  if (const Form* const one = find(*found, form)) {
+    if (!one->workshop.what.empty()) words.what = one->workshop.what;
+    if (!one->workshop.check.empty()) words.check = one->workshop.check;
+    if (!one->workshop.cost.empty()) words.cost = one->workshop.cost;
+  }
+  return words;
 }
 
 std::string described(const std::string& effect, const std::string& form, const std::vector<std::string>& open_forms) {

@@ -30,6 +30,13 @@ struct StartsFrom {
 using Values = std::vector<std::vector<double>>;
 using Starts = std::function<Values(const StartsFrom&)>;
 
+/// For the workshop.
+struct WorkshopWords {
+  std::string what = "";   ///< the effect as a noun, without the words of control theory: "play in the gear"
+  std::string check = "";  ///< what to do at the joint: whole sentences
+  std::string cost = "";   ///< what the robot suffers from it: a whole sentence
+};
+
 /// One law that the literature gives for an effect. With all parameters at their neutral values the model is without
 /// it; the fixed values alone change nothing.
 struct Form {
@@ -41,17 +48,11 @@ struct Form {
   /// voltage servo, a thermal drift without temperatures, what a drive's own loop does where commands are torques.
   Starts starts;
   std::vector<FixedValue> fixed = {};
+  WorkshopWords workshop = {};  ///< where the effect's don't fit; an empty one is the effect's
 
   Values starts_at(const calib::JointModel& current, const BenchScale& scale) const {
     return starts({*this, current.actuator, scale});
   }
-};
-
-/// For the workshop.
-struct WorkshopWords {
-  std::string what;   ///< the effect as a noun, without the words of control theory: "play in the gear"
-  std::string check;  ///< what to do at the joint: whole sentences
-  std::string cost;   ///< what the robot suffers from it: a whole sentence
 };
 
 /// What a check without a model measured, of a joint without the effect.
@@ -103,8 +104,9 @@ std::string title(const std::string& name);
 /// with the square of speed (not told from: growing in proportion to speed)". Without forms the effect's title.
 std::string described(const std::string& effect, const std::string& form, const std::vector<std::string>& open_forms);
 
-/// (name of an effect) => (its words). A name from another version of the catalogue is its own word.
-WorkshopWords workshop_words(const std::string& effect);
+/// (name of an effect, name of its form or nothing where the form is open) => (its words). A name from another version
+/// of the catalogue is its own word.
+WorkshopWords workshop_words(const std::string& effect, const std::string& form = "");
 
 /// True if the name of an effect or a parameter is in the list.
 bool contains(const std::vector<std::string>& names, const std::string& name);

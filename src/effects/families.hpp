@@ -58,4 +58,10 @@ inline Form law(std::string name, std::string title, std::vector<std::string> pa
           std::move(source), std::move(starts), std::move(fixed)};
 }
 
+/// The form, in a workshop's words of its own.
+inline Form called(WorkshopWords words, Form form) {
+  form.workshop = std::move(words);
+  return form;
+}
+
 }  // namespace pmg::effects

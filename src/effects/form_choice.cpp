@@ -1,6 +1,8 @@
 #include "effects/form_choice.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <map>
 #include <optional>
 
@@ -20,12 +22,42 @@ Eigen::VectorXd fitted_squares(const Extension& extension) {
   return squares;
 }
 
-/// The best starts of the form, and where all its parameters are those of the present form, their present values.
+/// (parameter, value, factor) => (its value where the effect is so many times as large).
+double in_size(const std::string& parameter, double value, double factor) {
+  const double neutral = calib::value(calib::JointModel{}, parameter);
+  return std::isfinite(neutral) ? neutral + factor * (value - neutral) : value / factor;
+}
+
+/// (form, a start) => (the same in other sizes, where the form has several strengths). Two thresholds make rollouts
+/// jump: no slope tells how large they are.
+std::vector<ScreenedStart> in_other_sizes(const StartScreen& screen, const Effect& family, std::size_t form,
+                                          const ScreenedStart& start) {
+  std::vector<ScreenedStart> found;
+  const std::vector<std::string>& parameters = family.forms[form].parameters;
+  const std::vector<std::string> sizes = strengths(family, family.forms[form]);
+  if (sizes.size() < 2) return found;
+  for (const double factor : {0.35, 0.5, 0.7, 0.84, 1.19, 1.41, 1.68, 2.0, 2.8}) {
+    std::vector<double> values;
+    for (const std::string& name : parameters) {
+      const double value = calib::value(start.model, name);
+      values.push_back(contains(sizes, name) ? in_size(name, value, factor) : value);
+    }
+    std::ranges::move(screen.at(family, form, values), std::back_inserter(found));
+  }
+  return found;
+}
+
+/// The best starts of the form, in other sizes too, and where all its parameters are those of the present form, their
+/// present values.
 std::vector<ScreenedStart> starts_of(const StartScreen& screen, const Effect& family, std::size_t form,
                                      const Extension& current, const BenchScale& scale) {
   std::vector<ScreenedStart> found = screen.best(family, form, scale);
+  if (found.empty()) return found;
+  for (const ScreenedStart& start : in_other_sizes(screen, family, form, found.front())) {
+    if (start.squares < found.front().squares) found.front() = start;
+  }
   const std::vector<std::string>& parameters = family.forms[form].parameters;
-  if (found.empty() || parameters != form_of(family.name, current.forms).parameters) return found;
+  if (parameters != form_of(family.name, current.forms).parameters) return found;
   std::vector<double> present;
   for (const std::string& parameter : parameters) present.push_back(calib::value(current.fitted.model, parameter));
   for (const ScreenedStart& start : screen.at(family, form, present)) {

@@ -12,6 +12,13 @@ constexpr double kEnough = 1e-4;
 constexpr int kIterationsBeside = 4;
 constexpr int kMostSecants = 3;  // later ones gain little: rollouts with dry friction are jagged
 
+/// Factor on the difference steps. The usual ones move a reading by a few milliradians; a coarse encoder of that model
+/// shows nothing of that, or a step that one sample takes earlier, and its fit would stop where it began.
+double wider_steps(const calib::JointModel& model) {
+  constexpr double kFine_rad = 5e-3, kMost = 10.0;
+  return std::clamp(calib::value(model, "sensor.quantum_rad") / kFine_rad, 1.0, kMost);
+}
+
 }  // namespace
 
 /// The result refers to the model and to the known Jacobian: both must outlive it.
@@ -46,7 +53,7 @@ NestedModel NestedFit::fit(const calib::JointModel& start, const calib::Unknowns
   found.model = start;
   found.unknowns = unknowns;
   found.prior_weight = prior_weight;
-  found.ranges = calib::ranges(unknowns);
+  found.ranges = calib::ranges(unknowns, wider_steps(start));
   found.coordinates = calib::coordinates(unknowns, start);
   const fitting::Minimum best = fitting::gauss_newton(
       problem(found, known), found.coordinates,

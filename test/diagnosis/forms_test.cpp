@@ -176,6 +176,26 @@ TEST(Forms, AHoldIsLookedForAgainBesideAnEffectThatCameLater) {
   EXPECT_NEAR(found.fitted.model.actuator.command.update_s, 0.046, 0.046 * 0.046 / 12.0);
 }
 
+/// Rollouts jump with both of its numbers: from another size no slope leads there.
+TEST(Forms, AFormOfTwoThresholdsIsLookedForInOtherSizes) {
+  Joint joint(bench::DriveLaw::kPositionPd);
+  calib::JointModel truth = joint.model;
+  truth.actuator.drive.dead_band_rad = 0.046;
+  truth.actuator.drive.dead_band_wake_rad = 0.046;
+  joint.runs = test::record(joint.bench, truth, 6, 1e-4);
+  const Fits of(joint);
+  calib::JointModel start = joint.model;
+  start.actuator.drive.dead_band_rad = 0.07;
+  const effects::Extension jumps = of.fits.fitted({"dead_band"}, {}, start, 10);
+  const effects::StartScreen without(of.fit, of.fits.fitted({}, {}, joint.model, 10).fitted);
+  const effects::FormLimits limits{
+      .apart = {}, .better_deviations = 1.0, .hopeless_deviations = 4.0, .first_iterations = 4, .most_iterations = 10};
+  const effects::Extension found = effects::in_best_form(of.fits, jumps, without, "dead_band", limits);
+  EXPECT_EQ(effects::form_of("dead_band", found.forms).name, "wakes_later");
+  EXPECT_NEAR(found.fitted.model.actuator.drive.dead_band_rad, 0.046, 0.005);
+  EXPECT_NEAR(found.fitted.model.actuator.drive.dead_band_wake_rad, 0.046, 0.005);
+}
+
 /// A joint whose hidden change is diagnosed from files.
 class FormsOfABench : public testing::Test {
  protected:

@@ -131,6 +131,28 @@ TEST(FirstParagraph, OfANumberThatIsSureOnlyBesideOthersSaysHowMuchItIsAtMost) {
               HasSubstr("(0.67 Nm, at most 0.7; the simulation has 0.5)"));
 }
 
+TEST(FirstParagraph, OfANumberThatMayBeNextToNothingSaysHowMuchItIsAtMost) {
+  const auto said = [](double low) {
+    return paragraph_of(
+        diagnosis_of(Verdict::kFound, {cause_of("load_friction", "friction.load_driving", {0.24, low, 0.48})}));
+  };
+  EXPECT_THAT(said(0.0), HasSubstr("(24 % of the torque that it carries, at most 48)"));
+  EXPECT_THAT(said(0.005), HasSubstr("(24 % of the torque that it carries, at most 48)"));
+  EXPECT_THAT(said(0.05), HasSubstr("(24 % of the torque that it carries, between 5 and 48)"));
+}
+
+TEST(FirstParagraph, NamesTheFormWhereTheRecordingsTellIt) {
+  Cause gain = cause("gain");
+  gain.form = "saturation";
+  EXPECT_THAT(
+      paragraph_of(diagnosis_of(Verdict::kFound, {gain})),
+      testing::AllOf(HasSubstr("a motor whose torque grows less and less with its current"),
+                     HasSubstr("Hold one weight after another"), HasSubstr("Where the robot needs most torque")));
+  gain.form_or_instead = {"torque"};
+  EXPECT_THAT(paragraph_of(diagnosis_of(Verdict::kFound, {gain})),
+              HasSubstr("a drive that is stronger or weaker than its number says"));
+}
+
 TEST(FirstParagraph, SaysMillimetresAndNewtonsOfALinearAxis) {
   bench::Bench axis;
   axis.rig = bench::Rig::kLinear;
@@ -209,22 +231,27 @@ TEST(FirstParagraph, SaysWhenTheSimulationGetsNoBetter) {
 TEST(FirstParagraph, HasNoTermOfTheFieldAndNoLongSentence) {
   for (const Verdict verdict : {Verdict::kFound, Verdict::kAmbiguous, Verdict::kUnexplained, Verdict::kNone}) {
     for (const effects::Effect& effect : effects::catalogue()) {
-      const bool any = verdict != Verdict::kNone;
-      const std::string text =
-          paragraph_of(diagnosis_of(verdict, any ? std::vector{cause(effect.name)} : std::vector<Cause>{}));
-      for (const char* term : {"residual", "rollout", "mrad", "fold", "interval", "linear", "excitation", "coulomb",
-                               "stribeck", "backlash", "hysteresis", "parameter", "_"})
-        EXPECT_THAT(text, Not(HasSubstr(term))) << effect.name;
+      for (const effects::Form& form : effect.forms) {
+        Cause of_form = cause(effect.name);
+        of_form.form = form.name;
+        const bool any = verdict != Verdict::kNone;
+        const std::string text = paragraph_of(diagnosis_of(verdict, any ? std::vector{of_form} : std::vector<Cause>{}));
+        for (const char* term : {"residual", "rollout", "mrad", "fold", "interval", "linear", "excitation", "coulomb",
+                                 "stribeck", "backlash", "hysteresis", "parameter", "_"})
+          EXPECT_THAT(text, Not(HasSubstr(term))) << effect.name << ' ' << form.name;
+      }
     }
   }
 }
 
-TEST(Workshop, EveryEffectOfTheCatalogueHasACheck) {
+TEST(Workshop, EveryFormOfTheCatalogueHasACheck) {
   for (const effects::Effect& effect : effects::catalogue()) {
-    const effects::WorkshopWords& words = effect.workshop;
-    EXPECT_NE(words.what, effect.title) << effect.name;
-    EXPECT_THAT(words.check, testing::ContainsRegex("[.?]$")) << effect.name;
-    EXPECT_THAT(words.cost, testing::ContainsRegex("[.]$")) << effect.name;
+    for (const effects::Form& form : effect.forms) {
+      const effects::WorkshopWords words = effects::workshop_words(effect.name, form.name);
+      EXPECT_NE(words.what, effect.title) << effect.name << ' ' << form.name;
+      EXPECT_THAT(words.check, testing::ContainsRegex("[.?]$")) << effect.name << ' ' << form.name;
+      EXPECT_THAT(words.cost, testing::ContainsRegex("[.]$")) << effect.name << ' ' << form.name;
+    }
   }
 }
 
