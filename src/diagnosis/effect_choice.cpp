@@ -15,6 +15,9 @@ namespace pmg::diagnosis {
 namespace {
 
 constexpr double kHopeless = 0.25;  // of what is asked for, after a first fit
+/// Beyond, no pair and nothing on trial is looked for again: a joint that the list doesn't explain takes and loses one
+/// effect after the other, each time at the cost of a whole search.
+constexpr std::size_t kMostLeftOut = 2;
 
 }  // namespace
 
@@ -280,6 +283,7 @@ Extension EffectSearch::completed(Extension current) {
       current = in_best_forms(pruned(next->extension, current));
       continue;
     }
+    if (left_out_.size() > kMostLeftOut) break;
     std::optional<Extension> more;
     if (leaves_rest(current)) more = with_pair(current);
     if (!more) more = with_one_on_trial(current);
