@@ -36,12 +36,11 @@ std::vector<ScreenedStart> in_other_sizes(const StartScreen& screen, const Effec
   const std::vector<std::string>& parameters = family.forms[form].parameters;
   const std::vector<std::string> sizes = strengths(family, family.forms[form]);
   if (sizes.size() < 2) return found;
+  const std::vector<double> begun = values_of(family.forms[form], start.model);
   for (const double factor : {0.35, 0.5, 0.7, 0.84, 1.19, 1.41, 1.68, 2.0, 2.8}) {
-    std::vector<double> values;
-    for (const std::string& name : parameters) {
-      const double value = calib::value(start.model, name);
-      values.push_back(contains(sizes, name) ? in_size(name, value, factor) : value);
-    }
+    std::vector<double> values = begun;
+    for (std::size_t p = 0; p < values.size(); ++p)
+      if (contains(sizes, parameters[p])) values[p] = in_size(parameters[p], values[p], factor);
     std::ranges::move(screen.at(family, form, values), std::back_inserter(found));
   }
   return found;
@@ -58,9 +57,7 @@ std::vector<ScreenedStart> starts_of(const StartScreen& screen, const Effect& fa
   }
   const std::vector<std::string>& parameters = family.forms[form].parameters;
   if (parameters != form_of(family.name, current.forms).parameters) return found;
-  std::vector<double> present;
-  for (const std::string& parameter : parameters) present.push_back(calib::value(current.fitted.model, parameter));
-  for (const ScreenedStart& start : screen.at(family, form, present)) {
+  for (const ScreenedStart& start : screen.at(family, form, values_of(family.forms[form], current.fitted.model))) {
     found.insert(start.squares < found.front().squares ? found.begin() : found.end(), start);
   }
   return found;

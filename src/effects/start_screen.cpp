@@ -56,7 +56,8 @@ StartScreen::StartScreen(const NestedFit& fit, NestedModel current)
       current_(std::move(current)),
       residuals_(fit.residuals(current_.model)),
       jacobian_(fit.jacobian(current_, residuals_)),
-      information_(fitting::products(jacobian_.of_run, jacobian_.of_run)) {}
+      information_(fitting::products(jacobian_.of_run, jacobian_.of_run)),
+      gradient_(fitting::products(jacobian_.of_run, residuals_)) {}
 
 /// The current model in this form, with these values of its parameters.
 calib::JointModel StartScreen::with(const Form& form, const std::vector<double>& values) const {
@@ -82,13 +83,20 @@ void StartScreen::refit_linearly(const fitting::Residuals& residuals, const Form
   }
 }
 
+/// A start whose residuals are these, as expected or rolled out.
+void StartScreen::add(const calib::JointModel& model, const fitting::Residuals& residuals, const Form& form,
+                      std::vector<ScreenedStart>& into) const {
+  ScreenedStart start{model, 0.0};
+  refit_linearly(residuals, form, start);
+  if (std::isfinite(start.squares)) into.push_back(start);
+}
+
 void StartScreen::screen(const Effect& effect, const Form& form, const std::vector<double>& values,
                          std::vector<ScreenedStart>& into) const {
-  ScreenedStart start{with(form, values), 0.0};
-  const fitting::Residuals there = fit_.residuals(start.model);
+  const calib::JointModel model = with(form, values);
+  const fitting::Residuals there = fit_.residuals(model);
   if (there.empty()) return;
-  refit_linearly(there, form, start);
-  if (std::isfinite(start.squares)) into.push_back(start);
+  add(model, there, form, into);
   scale_strengths(effect, form, values, there, into);
 }
 
@@ -114,7 +122,7 @@ void StartScreen::scale_strengths(const Effect& effect, const Form& form, const 
     information.topLeftCorner(others, others) = information_;
     information.col(others).head(others) = fitting::products(jacobian_.of_run, direction);
     information.row(others).head(others) = information.col(others).head(others).transpose();
-    gradient.head(others) = fitting::products(jacobian_.of_run, residuals_);
+    gradient.head(others) = gradient_;
     from.head(others) = current_.coordinates;
   }
   const double share = fitting::bounded_step(information, gradient, ranges, from, kDamping)[others];
@@ -126,11 +134,9 @@ void StartScreen::scale_strengths(const Effect& effect, const Form& form, const 
     if (!std::isfinite(none)) return;
     scaled_values[p] = none + share * (values[p] - none);
   }
-  ScreenedStart start{with(form, scaled_values), 0.0};
   fitting::Residuals moved = residuals_;
   for (std::size_t i = 0; i < there.size(); ++i) moved[i] += share * direction[i];
-  refit_linearly(moved, form, start);
-  if (std::isfinite(start.squares)) into.push_back(start);
+  add(with(form, scaled_values), moved, form, into);
 }
 
 /// The response to small waves over the joint's angle is linear in their sine and cosine parts: two rollouts for each
@@ -169,14 +175,13 @@ void StartScreen::screen_waves(const Form& form, const std::vector<double>& valu
   for (std::size_t p = 0; p < parts.size(); ++p) {
     for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += share[static_cast<Eigen::Index>(p)] * parts[p][i];
   }
-  ScreenedStart start{flat, 0.0};
+  calib::JointModel best = flat;
   for (std::size_t w = 0; w < waves.size(); ++w) {
     const Eigen::Vector2d own = share.segment<2>(2 * static_cast<Eigen::Index>(w));
-    calib::set(start.model, waves[w].amplitude, calib::value(flat, waves[w].amplitude) * std::min(own.norm(), 10.0));
-    calib::set(start.model, waves[w].phase, std::atan2(own[1], own[0]));
+    calib::set(best, waves[w].amplitude, calib::value(flat, waves[w].amplitude) * std::min(own.norm(), 10.0));
+    calib::set(best, waves[w].phase, std::atan2(own[1], own[0]));
   }
-  refit_linearly(moved, form, start);
-  if (std::isfinite(start.squares)) into.push_back(start);
+  add(best, moved, form, into);
 }
 
 /// A zero before each place, and another one after it: on both sides the response to an offset is linear. One rollout
@@ -201,9 +206,7 @@ void StartScreen::screen_slips(const Form& form, const std::vector<double>& valu
                              std::clamp(along[1] / across[1], -kMost, kMost)};
     fitting::Residuals moved = residuals_;
     for (std::size_t r = 0; r < there.size(); ++r) moved[r] += share[is_after(r)] * there[r];
-    ScreenedStart start{with(form, {(share[1] - share[0]) * values[0], zero_rad + share[0] * values[0], place}), 0.0};
-    refit_linearly(moved, form, start);
-    if (std::isfinite(start.squares)) into.push_back(start);
+    add(with(form, {(share[1] - share[0]) * values[0], zero_rad + share[0] * values[0], place}), moved, form, into);
   }
 }
 
@@ -219,12 +222,12 @@ void StartScreen::screen_periods(const Effect& effect, const Form& form, const s
 
 std::vector<ScreenedStart> StartScreen::at(const Effect& effect, std::size_t form,
                                            const std::vector<double>& values) const {
-  ScreenedStart start{with(effect.forms.at(form), values), 0.0, form};
-  const fitting::Residuals there = fit_.residuals(start.model);
-  if (there.empty()) return {};
-  refit_linearly(there, effect.forms.at(form), start);
-  if (!std::isfinite(start.squares)) return {};
-  return {start};
+  const calib::JointModel model = with(effect.forms.at(form), values);
+  const fitting::Residuals there = fit_.residuals(model);
+  std::vector<ScreenedStart> found;
+  if (!there.empty()) add(model, there, effect.forms.at(form), found);
+  for (ScreenedStart& start : found) start.form = form;
+  return found;
 }
 
 struct StartScreen::OfFewRuns {
@@ -234,9 +237,9 @@ struct StartScreen::OfFewRuns {
   StartScreen screen;
 };
 
-std::vector<double> StartScreen::values_of(const ScreenedStart& start, const Form& form) {
+std::vector<double> values_of(const Form& form, const calib::JointModel& model) {
   std::vector<double> values;
-  for (const std::string& parameter : form.parameters) values.push_back(calib::value(start.model, parameter));
+  for (const std::string& parameter : form.parameters) values.push_back(calib::value(model, parameter));
   return values;
 }
 
@@ -249,7 +252,7 @@ std::vector<std::vector<double>> StartScreen::promising_waves(const Effect& effe
   if (for_orders_ == nullptr) for_orders_ = std::make_shared<OfFewRuns>(*this, kRunsForOrders);
   std::vector<std::vector<double>> found;
   for (const ScreenedStart& start : for_orders_->screen.best(effect, form_index, scale))
-    found.push_back(values_of(start, form));
+    found.push_back(values_of(form, start.model));
   return found;
 }
 

@@ -16,6 +16,9 @@ struct ScreenedStart {
   std::size_t form = 0;  ///< of Effect::forms
 };
 
+/// Values of the form's parameters in a model, in their order.
+std::vector<double> values_of(const Form& form, const calib::JointModel& model);
+
 class StartScreen {
  public:
   /// Costs the model's Jacobian. The fit must outlive it.
@@ -42,13 +45,14 @@ class StartScreen {
 
  private:
   struct OfFewRuns;
+  void add(const calib::JointModel& model, const fitting::Residuals& residuals, const Form& form,
+           std::vector<ScreenedStart>& into) const;
   void screen(const Effect& effect, const Form& form, const std::vector<double>& values,
               std::vector<ScreenedStart>& into) const;
   void scale_strengths(const Effect& effect, const Form& form, const std::vector<double>& values,
                        const fitting::Residuals& there, std::vector<ScreenedStart>& into) const;
   void screen_slips(const Form& form, const std::vector<double>& values, std::vector<ScreenedStart>& into) const;
   void screen_waves(const Form& form, const std::vector<double>& values, std::vector<ScreenedStart>& into) const;
-  static std::vector<double> values_of(const ScreenedStart& start, const Form& form);
   std::vector<std::vector<double>> promising_waves(const Effect& effect, std::size_t form,
                                                    const BenchScale& scale) const;
   void refit_linearly(const fitting::Residuals& residuals, const Form& form, ScreenedStart& start) const;
@@ -60,7 +64,8 @@ class StartScreen {
   NestedModel current_;
   fitting::Residuals residuals_;
   RolloutJacobian jacobian_;
-  Eigen::MatrixXd information_;
+  Eigen::MatrixXd information_;  // J^T J
+  Eigen::VectorXd gradient_;     // J^T r
   mutable std::shared_ptr<const OfFewRuns> for_orders_;
 };
 

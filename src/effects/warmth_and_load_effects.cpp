@@ -27,6 +27,14 @@ Values winding_heats(const StartsFrom& from) {
   return found;
 }
 
+WorkshopWords friction_changes() { return {.what = "friction that changes as the joint works"}; }
+WorkshopWords torque_changes() {
+  return {.what = "torque that changes as the joint works",
+          .check =
+              "Let the joint hold a weight for a long time: does it need more and more current? Check the cooling "
+              "of the motor, and limits in its drive."};
+}
+
 }  // namespace
 
 std::vector<Effect> warmth_and_load_effects() {
@@ -53,20 +61,16 @@ std::vector<Effect> warmth_and_load_effects() {
        .demonstration = {.command = shown::sine, .both = {{"friction.coulomb_Nm", 0.3}}}},
       {.name = "self_heating",
        .title = "self-heating",
-       .forms = {called({.what = "friction that changes as the joint works"},
+       .forms = {called(friction_changes(),
                         law("friction_winding", "of friction, by the winding's heat", {"thermal.friction_per_Nm2_s"},
                             "Simoni, Beschi, Legnani, Visioli 2015", each({-0.2, 0.2, -2.0}))),
-                 called({.what = "friction that changes as the joint works"},
+                 called(friction_changes(),
                         law("friction_own", "of friction, by its own heat", {"thermal.friction_per_J"},
                             "Bittencourt, Gunnarsson 2012", each({-0.3, 0.3, -3.0}))),
-                 called({.what = "torque that changes as the joint works",
-                         .check = "Let the joint hold a weight for a long time: does it need more and more current? "
-                                  "Check the cooling of the motor, and limits in its drive."},
+                 called(torque_changes(),
                         law("torque_winding", "of torque, by the winding's heat",
                             {"thermal.torque_per_Nm2_s", "thermal.cooling_s"}, "Urata et al. 2008", winding_heats)),
-                 called({.what = "torque that changes as the joint works",
-                         .check = "Let the joint hold a weight for a long time: does it need more and more current? "
-                                  "Check the cooling of the motor, and limits in its drive."},
+                 called(torque_changes(),
                         law("torque_time", "of torque, by time", {"thermal.torque_fade_share", "thermal.torque_fade_s"},
                             "Urata et al. 2008", grid({{0.15}, {0.15, 0.5}}, {by_itself, of_a_run})))},
        .shows = "friction or torque changes along a run, the more the harder it works",

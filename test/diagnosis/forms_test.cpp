@@ -155,6 +155,9 @@ TEST(Forms, ParametersThatAFormFixesAreNotFitted) {
   EXPECT_EQ(names, (std::vector<std::string>{"friction.stribeck_Nm", "friction.stribeck_rad_s"}));
 }
 
+const effects::FormLimits kLimits{
+    .apart = {}, .better_deviations = 1.0, .hopeless_deviations = 4.0, .first_iterations = 4, .most_iterations = 10};
+
 /// A fit that ended at a wrong period for lack of another effect doesn't stay there.
 TEST(Forms, AHoldIsLookedForAgainBesideAnEffectThatCameLater) {
   Joint joint(bench::DriveLaw::kPositionPd);
@@ -169,9 +172,7 @@ TEST(Forms, AHoldIsLookedForAgainBesideAnEffectThatCameLater) {
   const effects::Extension ended = of.fits.fitted({"hold", "offset"}, forms, start, 10);
   ASSERT_GT(std::abs(ended.fitted.model.actuator.command.update_s - 0.046), 0.005);
   const effects::StartScreen without(of.fit, of.fits.fitted({"offset"}, {}, joint.model, 10).fitted);
-  const effects::FormLimits limits{
-      .apart = {}, .better_deviations = 1.0, .hopeless_deviations = 4.0, .first_iterations = 4, .most_iterations = 10};
-  const effects::Extension found = effects::in_best_form(of.fits, ended, without, "hold", limits);
+  const effects::Extension found = effects::in_best_form(of.fits, ended, without, "hold", kLimits);
   EXPECT_EQ(effects::form_of("hold", found.forms).name, "commands");
   EXPECT_NEAR(found.fitted.model.actuator.command.update_s, 0.046, 0.046 * 0.046 / 12.0);
 }
@@ -188,9 +189,7 @@ TEST(Forms, AFormOfTwoThresholdsIsLookedForInOtherSizes) {
   start.actuator.drive.dead_band_rad = 0.07;
   const effects::Extension jumps = of.fits.fitted({"dead_band"}, {}, start, 10);
   const effects::StartScreen without(of.fit, of.fits.fitted({}, {}, joint.model, 10).fitted);
-  const effects::FormLimits limits{
-      .apart = {}, .better_deviations = 1.0, .hopeless_deviations = 4.0, .first_iterations = 4, .most_iterations = 10};
-  const effects::Extension found = effects::in_best_form(of.fits, jumps, without, "dead_band", limits);
+  const effects::Extension found = effects::in_best_form(of.fits, jumps, without, "dead_band", kLimits);
   EXPECT_EQ(effects::form_of("dead_band", found.forms).name, "wakes_later");
   EXPECT_NEAR(found.fitted.model.actuator.drive.dead_band_rad, 0.046, 0.005);
   EXPECT_NEAR(found.fitted.model.actuator.drive.dead_band_wake_rad, 0.046, 0.005);
