@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <limits>
+#include <numeric>
 
 #include "bench/csv_table.hpp"
 #include "fitting/statistics.hpp"
@@ -57,22 +60,33 @@ void check_positions(const CsvTable& table, const std::string& column, const std
   }
 }
 
-/// A dropout: one reading that differs from both neighbours by more than 20 usual steps and by more than five times
-/// their difference. No joint moves there and back within two samples.
+/// From which distance to both neighbours on a reading may be a dropout: twenty usual steps. Of a coarse sensor most
+/// steps are none and the others at least a quantum; then five of these are enough.
+double far_rad(const std::vector<double>& q_rad) {
+  std::vector<double> steps_rad, moves_rad;
+  for (std::size_t k = 1; k < q_rad.size(); ++k) steps_rad.push_back(std::abs(q_rad[k] - q_rad[k - 1]));
+  std::ranges::copy_if(steps_rad, std::back_inserter(moves_rad), [](double step) { return step > 0.0; });
+  if (moves_rad.empty()) return std::numeric_limits<double>::infinity();
+  std::ranges::sort(steps_rad);
+  const std::size_t usual = steps_rad.size() * 19 / 20;  // dropouts themselves are among the largest
+  const double step_rad =
+      std::accumulate(steps_rad.begin(), steps_rad.begin() + static_cast<std::ptrdiff_t>(usual), 0.0) /
+      static_cast<double>(usual);
+  const double move_rad = fitting::median(moves_rad);
+  return std::clamp(20.0 * step_rad, 5.0 * move_rad, 20.0 * move_rad);
+}
+
+/// A dropout: one reading that is far from both neighbours and differs from them by more than five times their
+/// difference. No joint moves there and back within two samples.
 std::vector<bool> find_valid(const std::vector<double>& q_rad) {
-  std::vector<double> moves_rad;
-  for (std::size_t k = 1; k < q_rad.size(); ++k) {
-    if (q_rad[k] != q_rad[k - 1]) moves_rad.push_back(std::abs(q_rad[k] - q_rad[k - 1]));
-  }
   std::vector<bool> valid(q_rad.size(), true);
-  if (moves_rad.empty()) return valid;
-  const double far_rad = 20.0 * fitting::median(moves_rad);
+  const double far = far_rad(q_rad);
   for (std::size_t k = 0; k < q_rad.size(); ++k) {
     const double before_rad = q_rad[k == 0 ? 1 : k - 1], after_rad = q_rad[k + 1 == q_rad.size() ? k - 1 : k + 1];
     const double there_rad = q_rad[k] - before_rad, back_rad = q_rad[k] - after_rad;
     const double nearest_rad = std::min(std::abs(there_rad), std::abs(back_rad));
     valid[k] =
-        !(there_rad * back_rad > 0.0 && nearest_rad > far_rad && nearest_rad > 5.0 * std::abs(after_rad - before_rad));
+        !(there_rad * back_rad > 0.0 && nearest_rad > far && nearest_rad > 5.0 * std::abs(after_rad - before_rad));
   }
   return valid;
 }
@@ -148,9 +162,9 @@ Recording read_recording(const std::filesystem::path& file, const RecordingForma
   }
   mend_bus(recording.bus_V);
   recording.valid = find_valid(recording.q_rad);
-  if (recording.dropouts() > table.rows.size() / 50) {
+  if (recording.dropouts() > table.rows.size() / 20) {
     files::raise({file.string()}, "q" + unit, fmt::format("the sensor drops out in {} samples", recording.dropouts()),
-                 "at most one in 50");
+                 "at most one in 20");
   }
   return recording;
 }

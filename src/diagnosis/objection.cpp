@@ -95,7 +95,11 @@ bool EffectSearch::is_small(const Trial& trial) const {
   const bool few_blocks = beginning > options_.mean_of_few_blocks * usual && c.usual_gain >= least * usual;
   const bool all = trial.clearly_best && trial.share_of_rest >= options_.all_of_rest &&
                    c.deviations >= options_.all_of_rest_deviations;
-  const bool counts = all || (trial.missed_alone && (few_blocks || trial.share_of_rest >= options_.nearly_all_of_rest));
+  // What leaves half of the residual, noise and all, in usual blocks shows that there was less noise than repeats say.
+  const bool halves = c.log_gain >= options_.halved_log_gain && trial.share_of_rest >= options_.nearly_all_of_rest &&
+                      c.deviations >= options_.all_of_rest_deviations;
+  const bool counts =
+      all || halves || (trial.missed_alone && (few_blocks || trial.share_of_rest >= options_.nearly_all_of_rest));
   return gain_of(trial) < least * beginning && !counts;
 }
 

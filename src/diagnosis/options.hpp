@@ -58,6 +58,11 @@ struct JointDiagnosisOptions {
       "and if its gain is so many of its deviations; with as many, what remains on average counts as what remains in "
       "usual blocks, too",
       "hidden plants with two effects"};
+  work::Threshold halved_log_gain{
+      0.69, "",
+      "or if with nearly_all_of_rest and all_of_rest_deviations the logarithm of the mean square in usual blocks, "
+      "noise included, falls by so much: repeats differ by more than a right model leaves where each starts elsewhere",
+      "hidden plants, used odd seeds: of 52 with two effects it takes in none that is not there"};
   work::Threshold deviations_on_trial{2.0, "",
                                       "or of so many, on trial: judged again once what it needs beside it is there",
                                       "hidden plants with two effects"};
@@ -176,16 +181,16 @@ struct JointDiagnosisOptions {
 
   PMG_THRESHOLDS(least_deviations, least_folds_won, amplitude_of_noise, amplitude_of_beginning, mean_of_few_blocks,
                  gain_of_rest, scratch_amplitude_of_noise, scratch_amplitude_of_beginning, scratch_gain_of_rest,
-                 nearly_all_of_rest, all_of_rest, all_of_rest_deviations, deviations_on_trial, worse_deviations,
-                 one_torque, equal_gain, clearly_deviations, regained_share, stays_at_half_step, most_effects,
-                 apart_deviations, apart_share, fewest_apart_blocks, visible_share, better_form_deviations,
-                 hopeless_form_deviations, remains_of_noise, remains_of_beginning, causes_leave_of_noise,
-                 causes_leave_of_beginning, coarser_quantum, quantum_of_noise, gain_tolerance, damping_tolerance,
-                 friction_tolerance, load_tolerance, deviation_of_tolerance, constant_gain_of_rest, stiffer_presliding,
-                 softer_presliding, intervals, enough_deviations, most_asked_runs, most_asked_recordings, searched_runs,
-                 fitted_effects, exchanged_effects, fitted_pairs, finished_pairs, finished_effects, worth_finishing,
-                 worth_fitting_form, few_iterations, many_iterations, settled_squares, assembly, odd_runs, step,
-                 signatures, extension)
+                 nearly_all_of_rest, all_of_rest, all_of_rest_deviations, halved_log_gain, deviations_on_trial,
+                 worse_deviations, one_torque, equal_gain, clearly_deviations, regained_share, stays_at_half_step,
+                 most_effects, apart_deviations, apart_share, fewest_apart_blocks, visible_share,
+                 better_form_deviations, hopeless_form_deviations, remains_of_noise, remains_of_beginning,
+                 causes_leave_of_noise, causes_leave_of_beginning, coarser_quantum, quantum_of_noise, gain_tolerance,
+                 damping_tolerance, friction_tolerance, load_tolerance, deviation_of_tolerance, constant_gain_of_rest,
+                 stiffer_presliding, softer_presliding, intervals, enough_deviations, most_asked_runs,
+                 most_asked_recordings, searched_runs, fitted_effects, exchanged_effects, fitted_pairs, finished_pairs,
+                 finished_effects, worth_finishing, worth_fitting_form, few_iterations, many_iterations,
+                 settled_squares, assembly, odd_runs, step, signatures, extension)
 };
 
 /// Every row of both by its name for --set: a joint's as they are, the data's as "data_faults.NAME".

@@ -205,6 +205,32 @@ TEST_F(BenchFiles, MayMissASampleOfTheSensor) {
   EXPECT_FALSE(runs[1].recording.valid[40]);
 }
 
+/// Most steps of a coarse sensor are none, and the others a whole quantum: twenty of these are more than a reading
+/// leaps.
+TEST_F(BenchFiles, ACoarseSensorsReadingThatLeapsAwayIsADropout) {
+  constexpr double kQuantum_rad = 0.05;
+  change([](int row, auto c) {
+    const double q_rad = kQuantum_rad * (std::round(std::stod(c[2]) / kQuantum_rad) + (row == 40   ? 12
+                                                                                       : row == 60 ? 2
+                                                                                                   : 0));
+    return c[0] + "," + c[1] + "," + std::to_string(q_rad);
+  });
+  const auto runs = bench::read_bench(folder_).read_runs(bench::RowFilter(""));
+  EXPECT_FALSE(runs[1].recording.valid[40]);
+  EXPECT_TRUE(runs[1].recording.valid[60]) << "two quanta are noise";
+  EXPECT_EQ(runs[1].recording.dropouts(), 1U);
+}
+
+TEST_F(BenchFiles, OfASensorThatDropsOutMoreThanOnceInTwentySamplesAreRefused) {
+  const auto with_one_in = [&](int rows) {
+    change([&](int row, auto c) { return c[0] + "," + c[1] + "," + (row % rows == 1 ? "-3.14" : c[2]); });
+    return refusal();
+  };
+  EXPECT_EQ(with_one_in(23), "accepted");
+  EXPECT_THAT(with_one_in(13),
+              AllOf(HasSubstr("run1.csv: q_rad: the sensor drops out"), HasSubstr("at most one in 20")));
+}
+
 TEST(RowFilter, SaysWhatItCannotRead) {
   for (const char* text : {"kp", "kp in", "kp ~ 3", "kp == 3 or kp == 4", "kp == 3 and", "not"}) {
     EXPECT_THROW(bench::RowFilter{text}, std::invalid_argument) << text;

@@ -132,6 +132,7 @@ TEST_F(Judged, WhatExplainsNearlyAllOfTheRestMayBeSmallBesideTheBeginning) {
   fit_ = &pushed_;
   const EffectSearch at = search({}, 1e9);
   Trial trial = convincing("offset", extension(at, "offset", 0.2));
+  trial.comparison.log_gain = 0.5;
   trial.share_of_rest = 0.9;
   EXPECT_EQ(at.objection(trial), "");
   trial.missed_alone = false;
@@ -149,6 +150,23 @@ TEST_F(Judged, WhatExplainsNearlyAllOfTheRestMayBeSmallBesideTheBeginning) {
   trial.missed_alone = true;
   trial.share_of_rest = 0.5;
   EXPECT_NE(at.objection(trial), "");
+}
+
+TEST_F(Judged, WhatHalvesAResidualThatTheRepeatsExcuseIsNotSmall) {
+  fit_ = &pushed_;
+  const EffectSearch at = search({}, 1e9);
+  const auto objection = [&](double log_gain, double share_of_rest, double deviations) {
+    Trial trial = convincing("offset", extension(at, "offset", 0.2));
+    trial.missed_alone = false;
+    trial.comparison.log_gain = log_gain;
+    trial.share_of_rest = share_of_rest;
+    trial.comparison.deviations = deviations;
+    return at.objection(trial);
+  };
+  EXPECT_EQ(objection(0.75, 0.9, 8.0), "");
+  EXPECT_NE(objection(0.6, 0.9, 8.0), "") << "more than half is left";
+  EXPECT_NE(objection(0.75, 0.6, 8.0), "") << "what mends a form leaves a rest";
+  EXPECT_NE(objection(0.75, 0.9, 5.0), "") << "not sure enough";
 }
 
 /// A joint that swings by itself in a few blocks has a large mean at the beginning, beside which all else is small.
