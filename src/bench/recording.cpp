@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <numeric>
 
@@ -17,6 +16,7 @@ namespace pmg::bench {
 namespace {
 
 constexpr std::size_t kFewestSamples = 50;
+constexpr std::size_t kSamplesPerDropout = 20;  // a sensor that drops out more often is refused
 constexpr double kLongestGap_samples = 5.0;
 constexpr double kLargestAngle_rad =
     100.0;  // sixteen turns, more than any bench needs; in degrees a bit more than a quarter turn
@@ -63,16 +63,15 @@ void check_positions(const CsvTable& table, const std::string& column, const std
 /// From which distance to both neighbours on a reading may be a dropout: twenty usual steps. Of a coarse sensor most
 /// steps are none and the others at least a quantum; then five of these are enough.
 double far_rad(const std::vector<double>& q_rad) {
-  std::vector<double> steps_rad, moves_rad;
+  std::vector<double> steps_rad;
   for (std::size_t k = 1; k < q_rad.size(); ++k) steps_rad.push_back(std::abs(q_rad[k] - q_rad[k - 1]));
-  std::ranges::copy_if(steps_rad, std::back_inserter(moves_rad), [](double step) { return step > 0.0; });
-  if (moves_rad.empty()) return std::numeric_limits<double>::infinity();
   std::ranges::sort(steps_rad);
-  const std::size_t usual = steps_rad.size() * 19 / 20;  // dropouts themselves are among the largest
+  const auto moves = std::ranges::upper_bound(steps_rad, 0.0);
+  if (moves == steps_rad.end()) return std::numeric_limits<double>::infinity();
+  const double move_rad = fitting::median({moves, steps_rad.end()});
+  steps_rad.resize(steps_rad.size() * 19 / 20);  // dropouts themselves are among the largest
   const double step_rad =
-      std::accumulate(steps_rad.begin(), steps_rad.begin() + static_cast<std::ptrdiff_t>(usual), 0.0) /
-      static_cast<double>(usual);
-  const double move_rad = fitting::median(moves_rad);
+      std::accumulate(steps_rad.begin(), steps_rad.end(), 0.0) / static_cast<double>(steps_rad.size());
   return std::clamp(20.0 * step_rad, 5.0 * move_rad, 20.0 * move_rad);
 }
 
@@ -162,9 +161,9 @@ Recording read_recording(const std::filesystem::path& file, const RecordingForma
   }
   mend_bus(recording.bus_V);
   recording.valid = find_valid(recording.q_rad);
-  if (recording.dropouts() > table.rows.size() / 20) {
+  if (recording.dropouts() > table.rows.size() / kSamplesPerDropout) {
     files::raise({file.string()}, "q" + unit, fmt::format("the sensor drops out in {} samples", recording.dropouts()),
-                 "at most one in 20");
+                 fmt::format("at most one in {}", kSamplesPerDropout));
   }
   return recording;
 }

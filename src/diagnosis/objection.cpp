@@ -93,13 +93,12 @@ bool EffectSearch::is_small(const Trial& trial) const {
   // A second effect that only mends the first one's form leaves a rest itself, or mends what a verdict forgives.
   const double least = std::pow(limits_.of_beginning, 2), usual = usual_rest(base_extension_);
   const bool few_blocks = beginning > options_.mean_of_few_blocks * usual && c.usual_gain >= least * usual;
-  const bool all = trial.clearly_best && trial.share_of_rest >= options_.all_of_rest &&
-                   c.deviations >= options_.all_of_rest_deviations;
+  const bool sure = c.deviations >= options_.all_of_rest_deviations;
+  const bool nearly_all = trial.share_of_rest >= options_.nearly_all_of_rest;
+  const bool all = sure && trial.clearly_best && trial.share_of_rest >= options_.all_of_rest;
   // What leaves half of the residual, noise and all, in usual blocks shows that there was less noise than repeats say.
-  const bool halves = c.log_gain >= options_.halved_log_gain && trial.share_of_rest >= options_.nearly_all_of_rest &&
-                      c.deviations >= options_.all_of_rest_deviations;
-  const bool counts =
-      all || halves || (trial.missed_alone && (few_blocks || trial.share_of_rest >= options_.nearly_all_of_rest));
+  const bool halves = sure && nearly_all && c.log_gain >= options_.halved_log_gain;
+  const bool counts = all || halves || (trial.missed_alone && (few_blocks || nearly_all));
   return gain_of(trial) < least * beginning && !counts;
 }
 

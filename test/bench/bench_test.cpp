@@ -210,10 +210,10 @@ TEST_F(BenchFiles, MayMissASampleOfTheSensor) {
 TEST_F(BenchFiles, ACoarseSensorsReadingThatLeapsAwayIsADropout) {
   constexpr double kQuantum_rad = 0.05;
   change([](int row, auto c) {
-    const double q_rad = kQuantum_rad * (std::round(std::stod(c[2]) / kQuantum_rad) + (row == 40   ? 12
-                                                                                       : row == 60 ? 2
-                                                                                                   : 0));
-    return c[0] + "," + c[1] + "," + std::to_string(q_rad);
+    double quanta = std::round(std::stod(c[2]) / kQuantum_rad);
+    if (row == 40) quanta += 12.0;
+    if (row == 60) quanta += 2.0;
+    return c[0] + "," + c[1] + "," + std::to_string(kQuantum_rad * quanta);
   });
   const auto runs = bench::read_bench(folder_).read_runs(bench::RowFilter(""));
   EXPECT_FALSE(runs[1].recording.valid[40]);
