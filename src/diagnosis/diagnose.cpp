@@ -266,11 +266,14 @@ class JointDiagnosisRun {
   }
 
   /// True if the model misses the judged runs by more than a verdict forgives, and hardly less than a joint that stands
-  /// still. The rest of usual blocks says nothing of a joint that sticks in most of them.
+  /// still; or has no causes and misses them by more than a sound one. The rest of usual blocks says nothing of a joint
+  /// that sticks in most of them, or does what no effect explains in few.
   bool misses_the_motion() const {
-    const double after = diagnosis_.held_out_after.value;
-    return after > std::sqrt(by_.remains_of_noise) * diagnosis_.noise_floor.mean_absolute_rad &&
-           after > calib::kExplainedShare * diagnosis_.standing_still;
+    const double after = diagnosis_.held_out_after.value, floor = diagnosis_.noise_floor.mean_absolute_rad;
+    const bool sound = !diagnosis_.causes.empty() || !diagnosis_.assemblies.varies.empty() ||
+                       after <= by_.without_cause_of_floor * floor;
+    return !sound || (after > std::sqrt(by_.remains_of_noise) * floor &&
+                      after > calib::kExplainedShare * diagnosis_.standing_still);
   }
 
   void conclude(const EffectSearch& search, const effects::NestedFit& of_assemblies, const effects::NestedFit& fit) {

@@ -176,6 +176,7 @@ class EffectSearch {
   std::string objection_to_pair(const Extension& pair, const std::string& first, const std::string& second);
   std::optional<Extension> with_pair(const Extension& current);
   bool stands(const Extension& extension, const std::string& effect);
+  bool promises(const Trial& trial) const;
   std::optional<Extension> with_one_on_trial(const Extension& current);
   Extension pruned(Extension current, const Extension& before);
   bool clearly_better(const Extension& other, const Extension& current) const;

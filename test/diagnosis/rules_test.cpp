@@ -159,12 +159,33 @@ TEST_F(Rules, WhatNoEffectExplainsIsUnexplained) {
   truth.actuator = healthy_actuator();
   const bench::Bench bench = written(on_a_shaking_table(bench_, truth));
   DiagnoseOptions options = given_healthy();
+  options.decide_by.without_cause_of_floor = 1e12;
   EXPECT_EQ(diagnose(bench, options).verdict, evidence::Verdict::kUnexplained);
   options.decide_by.remains_of_noise = 1e12;
   EXPECT_NE(diagnose(bench, options).verdict, evidence::Verdict::kUnexplained);
-  options = given_healthy();
+  options.decide_by.remains_of_noise = 6.0;
   options.decide_by.remains_of_beginning = 1e12;
   EXPECT_NE(diagnose(bench, options).verdict, evidence::Verdict::kUnexplained);
+}
+
+TEST_F(Rules, WhatNoEffectExplainsInFewBlocksIsUnexplainedToo) {
+  calib::JointModel truth;
+  truth.actuator = healthy_actuator();
+  std::vector<calib::SingleJoint> joints;
+  for (const calib::SingleJoint& joint : test::record(bench_, truth, 4, 2e-4)) {
+    bench::BenchRun run = joint.run();
+    for (std::size_t k = 250; k < run.recording.q_rad.size(); ++k)
+      run.recording.q_rad[k] += 0.01 * std::sin(19.0 * run.recording.t_s[k] + 2.0 * run.kp);
+    joints.emplace_back(bench_, run, joint.step_s());
+  }
+  const bench::Bench bench = written(joints);
+  DiagnoseOptions options = given_healthy();
+  const Diagnosis found = diagnose(bench, options);
+  ASSERT_TRUE(found.causes.empty());
+  EXPECT_EQ(found.verdict, evidence::Verdict::kUnexplained);
+  EXPECT_LT(found.after_over_noise, std::sqrt(options.decide_by.remains_of_noise)) << "usual blocks are in order";
+  options.decide_by.without_cause_of_floor = 1e9;
+  EXPECT_EQ(diagnose(bench, options).verdict, evidence::Verdict::kNone);
 }
 
 TEST_F(Rules, AModelThatMovesWhereTheJudgedJointRestsExplainsNothing) {
