@@ -266,14 +266,20 @@ class JointDiagnosisRun {
   }
 
   /// True if the model misses the judged runs by more than a verdict forgives, and hardly less than a joint that stands
-  /// still; or has no causes and misses them by more than a sound one. The rest of usual blocks says nothing of a joint
-  /// that sticks in most of them, or does what no effect explains in few.
+  /// still. The rest of usual blocks says nothing of a joint that sticks in most of them.
   bool misses_the_motion() const {
-    const double after = diagnosis_.held_out_after.value, floor = diagnosis_.noise_floor.mean_absolute_rad;
-    const bool sound = !diagnosis_.causes.empty() || !diagnosis_.assemblies.varies.empty() ||
-                       after <= by_.without_cause_of_floor * floor;
-    return !sound || (after > std::sqrt(by_.remains_of_noise) * floor &&
-                      after > calib::kExplainedShare * diagnosis_.standing_still);
+    const double after = diagnosis_.held_out_after.value;
+    return after > std::sqrt(by_.remains_of_noise) * diagnosis_.noise_floor.mean_absolute_rad &&
+           after > calib::kExplainedShare * diagnosis_.standing_still;
+  }
+
+  bool has_no_cause() const { return diagnosis_.causes.empty() && diagnosis_.assemblies.varies.empty(); }
+
+  /// True if the model has no causes and misses the judged runs by more than that of a sound joint. The rest of usual
+  /// blocks says nothing of a joint that does what no effect explains in few.
+  bool misses_more_than_of_sound_joint() const {
+    return has_no_cause() &&
+           diagnosis_.held_out_after.value > by_.without_cause_of_floor * diagnosis_.noise_floor.mean_absolute_rad;
   }
 
   void conclude(const EffectSearch& search, const effects::NestedFit& of_assemblies, const effects::NestedFit& fit) {
@@ -286,6 +292,7 @@ class JointDiagnosisRun {
     };
     const bool remains =
         leaves(by_.remains_of_noise, by_.remains_of_beginning) || misses_the_motion() ||
+        misses_more_than_of_sound_joint() ||
         (!diagnosis_.causes.empty() && leaves(by_.causes_leave_of_noise, by_.causes_leave_of_beginning));
     if (remains) {
       diagnosis_.depends_on = significant_dependences(
@@ -297,9 +304,8 @@ class JointDiagnosisRun {
     diagnosis_.verdict = progress_.interrupted_now() ? evidence::Verdict::kInterrupted
                          : remains                   ? evidence::Verdict::kUnexplained
                          : alike                     ? evidence::Verdict::kAmbiguous
-                         : diagnosis_.causes.empty() && diagnosis_.assemblies.varies.empty()
-                             ? evidence::Verdict::kNone
-                             : evidence::Verdict::kFound;
+                         : has_no_cause()            ? evidence::Verdict::kNone
+                                                     : evidence::Verdict::kFound;
   }
 
   /// No effect explains the rest: a residual torque may at least describe it.

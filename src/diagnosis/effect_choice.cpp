@@ -255,8 +255,29 @@ bool EffectSearch::promises(const Trial& trial) const {
     return kind.square_deviations >= options_.deviations_on_trial;
   };
   return !kinds.empty() && std::all_of(kinds.begin(), kinds.end(), surely) &&
-         std::sqrt(std::max(0.0, trial.comparison.gain)) >= limits_.of_noise * std::sqrt(limits_.noise_squares) &&
-         !refuted(trial);
+         stands_out_of_noise(trial.comparison.gain) && !refuted(trial);
+}
+
+/// The trial that promises most in the mean, or null.
+const Trial* EffectSearch::most_promising(const std::vector<Trial>& trials) const {
+  const Trial* most = nullptr;
+  for (const Trial& trial : trials) {
+    if ((most == nullptr || trial.comparison.gain > most->comparison.gain) && promises(trial)) most = &trial;
+  }
+  return most;
+}
+
+/// (trial beside an extension) => (the trial's extension and what is convincing beside it; nothing if it has no more
+/// effects than the extension, or one that is not convincing in the end).
+std::optional<Extension> EffectSearch::after_trial(const Trial& trial, const Extension& current) {
+  on_trial_ = true;
+  Extension with = completed(in_best_forms(trial.extension));
+  on_trial_ = false;
+  const bool all = std::all_of(with.effects.begin(), with.effects.end(), [&](const std::string& name) {
+    return measured(name) != nullptr || stands(with, name);
+  });
+  if (!all || with.effects.size() <= current.effects.size()) return std::nullopt;
+  return with;
 }
 
 /// (extension that leaves more than a model in order; no effect is convincing beside it) => (the same with one more
@@ -270,24 +291,14 @@ std::optional<Extension> EffectSearch::with_one_on_trial(const Extension& curren
   std::vector<Trial> trials = additions;
   std::erase_if(trials, [&](const Trial& trial) { return trial.share_of_rest < least_share; });
   for (Trial& trial : trials) trial.on_trial = true;
-  std::vector<const Trial*> candidates{chosen(trials)};
-  const Trial* most = nullptr;
-  for (const Trial& trial : trials) {
-    if (promises(trial) && (most == nullptr || trial.comparison.gain > most->comparison.gain)) most = &trial;
-  }
-  if (most != candidates.front()) candidates.push_back(most);
-  for (const Trial* next : candidates) {
-    if (next == nullptr) continue;
-    on_trial_ = true;
-    Extension with = completed(in_best_forms(next->extension));
-    on_trial_ = false;
-    const bool all = std::all_of(with.effects.begin(), with.effects.end(), [&](const std::string& name) {
-      return measured(name) != nullptr || stands(with, name);
-    });
-    if (all && with.effects.size() > current.effects.size()) return with;
-  }
-  last_additions_ = additions;
-  return std::nullopt;
+  const Trial* in_usual_blocks = chosen(trials);
+  std::optional<Extension> with;
+  if (in_usual_blocks != nullptr) with = after_trial(*in_usual_blocks, current);
+  if (with) return with;
+  const Trial* in_mean = most_promising(trials);
+  if (in_mean != nullptr && in_mean != in_usual_blocks) with = after_trial(*in_mean, current);
+  if (!with) last_additions_ = additions;
+  return with;
 }
 
 Extension EffectSearch::choose() { return completed(with_measured()); }

@@ -125,6 +125,8 @@ class EffectSearch {
   static constexpr const char* kSmall = "what it explains is small against the initial residual";
   double gain_of(const Trial& trial) const;
   bool is_small(const Trial& trial) const;
+  /// True if this gain [rad^2] is large enough beside the noise.
+  bool stands_out_of_noise(double gain) const;
   /// Why the trial is not convincing, or "".
   std::string objection(const Trial& trial) const;
   /// Why the effect's numbers in this linearised fit are none, or "": the 95 % intervals of its strengths contain the
@@ -177,6 +179,8 @@ class EffectSearch {
   std::optional<Extension> with_pair(const Extension& current);
   bool stands(const Extension& extension, const std::string& effect);
   bool promises(const Trial& trial) const;
+  const Trial* most_promising(const std::vector<Trial>& trials) const;
+  std::optional<Extension> after_trial(const Trial& trial, const Extension& current);
   std::optional<Extension> with_one_on_trial(const Extension& current);
   Extension pruned(Extension current, const Extension& before);
   bool clearly_better(const Extension& other, const Extension& current) const;

@@ -102,6 +102,10 @@ bool EffectSearch::is_small(const Trial& trial) const {
   return gain_of(trial) < least * beginning && !counts;
 }
 
+bool EffectSearch::stands_out_of_noise(double gain) const {
+  return std::sqrt(std::max(0.0, gain)) >= limits_.of_noise * std::sqrt(limits_.noise_squares);
+}
+
 std::string EffectSearch::objection(const Trial& trial) const {
   const fitting::Comparison& c = trial.comparison;
   if (shown(trial.effect)) {  // half-second blocks hardly detect an effect that is constant over a run
@@ -117,8 +121,7 @@ std::string EffectSearch::objection(const Trial& trial) const {
   }
   if (!trial.on_trial && c.folds_won < options_.least_folds_won)
     return fmt::format("better in only {:.0f} % of the folds", 100.0 * c.folds_won);
-  if (std::sqrt(gain) < limits_.of_noise * std::sqrt(limits_.noise_squares))
-    return "what it explains is small beside the noise";
+  if (!stands_out_of_noise(gain)) return "what it explains is small beside the noise";
   if (!trial.on_trial && is_small(trial)) return kSmall;
   if (trial.share_of_rest < limits_.of_rest) {
     return fmt::format("it explains {:.0f} % of what is left: model-form errors of other effects can explain as much",

@@ -121,8 +121,7 @@ struct JointDiagnosisOptions {
   work::Threshold without_cause_of_floor{
       3.0, "",
       "a model without causes that misses the judged runs by more than so many noise floors, on average, is "
-      "unexplained: "
-      "what a joint does in few blocks its usual ones don't show",
+      "unexplained: what a joint does in few blocks its usual ones don't show",
       "hidden plants, used odd seeds: of 177 sound joints one misses them by 2.6, the others by at most 2.2"};
   // When the readings alone decide.
   work::Threshold coarser_quantum{

@@ -133,13 +133,14 @@ TEST_F(SimulatedCoarsely, AJointHasNoCauseThatMendsTheStep) {
   EXPECT_EQ(why_no_delay(3e-3, false), "") << "half the step leaves most of its gain";
 }
 
-/// Four runs of the joint on a rig whose table shakes.
-std::vector<calib::SingleJoint> on_a_shaking_table(const bench::Bench& bench, const calib::JointModel& truth) {
+/// Four runs of the joint on a rig whose table shakes from this sample on.
+std::vector<calib::SingleJoint> on_a_shaking_table(const bench::Bench& bench, const calib::JointModel& truth,
+                                                   double by_rad = 0.05, std::size_t from = 0) {
   std::vector<calib::SingleJoint> joints;
   for (const calib::SingleJoint& joint : test::record(bench, truth, 4, 2e-4)) {
     bench::BenchRun run = joint.run();
-    for (std::size_t k = 0; k < run.recording.q_rad.size(); ++k)
-      run.recording.q_rad[k] += 0.05 * std::sin(19.0 * run.recording.t_s[k] + 2.0 * run.kp);
+    for (std::size_t k = from; k < run.recording.q_rad.size(); ++k)
+      run.recording.q_rad[k] += by_rad * std::sin(19.0 * run.recording.t_s[k] + 2.0 * run.kp);
     joints.emplace_back(bench, run, joint.step_s());
   }
   return joints;
@@ -163,7 +164,7 @@ TEST_F(Rules, WhatNoEffectExplainsIsUnexplained) {
   EXPECT_EQ(diagnose(bench, options).verdict, evidence::Verdict::kUnexplained);
   options.decide_by.remains_of_noise = 1e12;
   EXPECT_NE(diagnose(bench, options).verdict, evidence::Verdict::kUnexplained);
-  options.decide_by.remains_of_noise = 6.0;
+  options.decide_by.remains_of_noise = given_healthy().decide_by.remains_of_noise;
   options.decide_by.remains_of_beginning = 1e12;
   EXPECT_NE(diagnose(bench, options).verdict, evidence::Verdict::kUnexplained);
 }
@@ -171,14 +172,7 @@ TEST_F(Rules, WhatNoEffectExplainsIsUnexplained) {
 TEST_F(Rules, WhatNoEffectExplainsInFewBlocksIsUnexplainedToo) {
   calib::JointModel truth;
   truth.actuator = healthy_actuator();
-  std::vector<calib::SingleJoint> joints;
-  for (const calib::SingleJoint& joint : test::record(bench_, truth, 4, 2e-4)) {
-    bench::BenchRun run = joint.run();
-    for (std::size_t k = 250; k < run.recording.q_rad.size(); ++k)
-      run.recording.q_rad[k] += 0.01 * std::sin(19.0 * run.recording.t_s[k] + 2.0 * run.kp);
-    joints.emplace_back(bench_, run, joint.step_s());
-  }
-  const bench::Bench bench = written(joints);
+  const bench::Bench bench = written(on_a_shaking_table(bench_, truth, 0.01, 250));
   DiagnoseOptions options = given_healthy();
   const Diagnosis found = diagnose(bench, options);
   ASSERT_TRUE(found.causes.empty());
