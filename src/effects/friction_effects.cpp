@@ -130,7 +130,7 @@ std::vector<Effect> friction_effects() {
                                   "something pull it back? Look for a cable, a hose or a spring.",
                          .cost = "It rests beside its target, more so at some places than at others."},
                         law("spring", "of a spring with preload", {"ripple.offset_Nm", "ripple.spring_Nm_per_rad"},
-                            "Wahl 1963", grid({{-0.2, 0.2}, {-0.1, 0.1}})))},
+                            "Wahl 1963", grid({{-0.2, 0.2}, {0.1}})))},
        .shows = "pushed to one side by the same torque always, at rest too",
        .needs = "two gains, and motion in both directions",
        .workshop = {"a constant torque to one side",

@@ -102,13 +102,12 @@ Usual usual(Quantity quantity, const BenchScale& scale) {
   const double per_energy = 1.0 / (torque * speed * scale.duration_s);
   switch (quantity) {
     case kTorque:
+    case kSpringRate:
       return {torque, torque, 5.0 * peak};
     case kDamping:
       return {damping, damping, 10.0 * damping};
     case kQuadraticDamping:
       return {quadratic, quadratic, 10.0 * quadratic};
-    case kSpringRate:
-      return {torque, torque, 5.0 * peak, -5.0 * peak};
     case kPerTorque:
       return {0.3 / torque, 1.0 / peak};
     case kPerHeat:

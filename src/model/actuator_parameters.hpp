@@ -322,7 +322,7 @@ inline constexpr auto kActuatorParameters = [] {
       PMG_ACTUATOR_PARAMETER(ripple, second_Nm, kTorque, 0.0, 2.0, kNotNegative, 0.2),
       PMG_ACTUATOR_PARAMETER(ripple, second_phase_rad, kPhase, -3.15, 3.15, kAny, -0.5),
       PMG_ACTUATOR_PARAMETER(ripple, offset_Nm, kTorque, -5.0, 5.0, kAny, 1.0),
-      PMG_ACTUATOR_PARAMETER(ripple, spring_Nm_per_rad, kSpringRate, -2.0, 2.0, kAny, 1.0),
+      PMG_ACTUATOR_PARAMETER(ripple, spring_Nm_per_rad, kSpringRate, 0.0, 2.0, kAny, 1.0),
   };
 }();
 #undef PMG_ACTUATOR_PARAMETER

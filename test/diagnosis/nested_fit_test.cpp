@@ -57,6 +57,17 @@ TEST(NestedFit, NeverEndsWorseThanItsStart) {
   EXPECT_LE(s.fit.fit(start, {}, 5).squares, before);
 }
 
+// What pushes a joint away from a place is its load or a form that the search lacks.
+TEST(NestedFit, ASpringPullsAndNeverPushes) {
+  for (const double spring_Nm_per_rad : {0.8, -0.8}) {
+    calib::JointModel truth = healthy();
+    truth.actuator.ripple.spring_Nm_per_rad = spring_Nm_per_rad;
+    const Setting s(truth);
+    const auto found = s.fit.fit(healthy(), {effects::unknown("ripple.spring_Nm_per_rad", s.bench, s.scale)}, 20);
+    EXPECT_NEAR(found.model.actuator.ripple.spring_Nm_per_rad, std::max(0.0, spring_Nm_per_rad), 0.02);
+  }
+}
+
 TEST(NestedFit, StepsStayInTheRangesAndTheOthersMakeUpForIt) {
   Eigen::Matrix2d information;
   information << 1.0, 0.5, 0.5, 1.0;
