@@ -18,23 +18,25 @@ double wobble_rad(const model::ActuatorParameters::Sensor& p, double angle_rad) 
 
 AngleSensor::AngleSensor(const model::ActuatorParameters::Sensor& parameters, double step_s)
     : parameters_(parameters),
-      step_s_(step_s),
       delay_steps_(parameters.delay_s / step_s),
       delays_(parameters.delay_s > 0.0),
       lags_(parameters.lag_s > 0.0),
       velocity_lags_(parameters.velocity_lag_s > 0.0),
-      prompt_(!delays_ && !lags_ && !velocity_lags_ && parameters.hold_s <= step_s),
       round_(parameters.eccentricity_rad == 0.0 && parameters.ellipticity_rad == 0.0),
-      plain_(prompt_ && parameters.hysteresis_rad == 0.0 && round_ && parameters.quantum_rad == 0.0),
+      plain_(!delays_ && !lags_ && !velocity_lags_ && parameters.hold_s <= step_s && parameters.hysteresis_rad == 0.0 &&
+             round_ && parameters.quantum_rad == 0.0),
       refresh_(parameters.hold_s, step_s),
       lag_stages_(static_cast<int>(parameters.lag_stages)),
-      lag_share_(step_s / (parameters.lag_s / parameters.lag_stages + step_s)) {}
+      lag_share_(step_s / (parameters.lag_s / parameters.lag_stages + step_s)),
+      velocity_lag_share_(step_s / (parameters.velocity_lag_s + step_s)),
+      prompt_speed_(parameters.hold_s <= step_s ? parameters.angle_scale * std::max(0.0, 1.0 - delay_steps_) *
+                                                      std::pow(lag_share_, lag_stages_) * velocity_lag_share_
+                                                : 0.0) {}
 
 void AngleSensor::reset(double angle_rad) noexcept {
   followed_rad_ = angle_rad;
   if (delays_) past_.fill({shown_rad(angle_rad), 0.0});
-  before_rad_ = quantised_rad(shown_rad(angle_rad));
-  lagged_rad_.fill(before_rad_);
+  lagged_.fill({quantised_rad(shown_rad(angle_rad)), 0.0});
   lagged_rad_s_ = 0.0;
   refresh_.restart();
 }
@@ -81,7 +83,7 @@ double AngleSensor::angle_rad(const model::ActuatorParameters::Sensor& p, double
 
 /// Delay, quantum, lag, refresh period. The stages of a lag are of first order, implicit Euler:
 ///   lagged += h / (lag / stages + h) (reading - lagged).
-/// A drive whose position lags derives its speed from that position.
+/// The speed lags as the position does. As without a lag, it knows no quantum: a drive smooths the steps away.
 Seen AngleSensor::stepped(double angle_rad, double dq_rad_s) noexcept {
   followed_rad_ = followed_rad(angle_rad);
   Seen seen{shown_rad(followed_rad_), parameters_.angle_scale * dq_rad_s};
@@ -92,15 +94,13 @@ Seen AngleSensor::stepped(double angle_rad, double dq_rad_s) noexcept {
   seen.q_rad = quantised_rad(seen.q_rad);
   if (lags_) {
     for (int stage = 0; stage < lag_stages_; ++stage) {
-      double& lagged_rad = lagged_rad_[static_cast<std::size_t>(stage)];
-      lagged_rad += lag_share_ * (seen.q_rad - lagged_rad);
-      seen.q_rad = lagged_rad;
+      Seen& lagged = lagged_[static_cast<std::size_t>(stage)];
+      lagged = between(lagged, seen, lag_share_);
+      seen = lagged;
     }
-    seen.dq_rad_s = (seen.q_rad - before_rad_) / step_s_;
-    before_rad_ = seen.q_rad;
   }
   if (velocity_lags_) {
-    lagged_rad_s_ += step_s_ / (parameters_.velocity_lag_s + step_s_) * (seen.dq_rad_s - lagged_rad_s_);
+    lagged_rad_s_ += velocity_lag_share_ * (seen.dq_rad_s - lagged_rad_s_);
     seen.dq_rad_s = lagged_rad_s_;
   }
   if (refresh_.every_step()) return seen;

@@ -41,8 +41,9 @@ class AngleSensor {
   /// Inverse of reading_rad without quantum and delay, for an angle in the middle of the hysteresis.
   static double angle_rad(const model::ActuatorParameters::Sensor& parameters, double reading_rad);
 
-  /// By how much the speed that the drive sees changes with the speed within the same step; 0 if it sees it later.
-  double prompt_speed() const noexcept { return prompt_ ? parameters_.angle_scale : 0.0; }
+  /// By how much the speed that the drive sees changes with the speed within the same step: less the later it comes,
+  /// so that next to no delay is none.
+  double prompt_speed() const noexcept { return prompt_speed_; }
 
   void restart_periods() noexcept { refresh_.restart(); }
 
@@ -53,16 +54,17 @@ class AngleSensor {
   double quantised_rad(double shown_rad) const noexcept;
 
   model::ActuatorParameters::Sensor parameters_;
-  double step_s_, delay_steps_;
-  bool delays_, lags_, velocity_lags_, prompt_, round_, plain_;
+  double delay_steps_;
+  bool delays_, lags_, velocity_lags_, round_, plain_;
   DelayLine<Seen> past_;
   Period refresh_;
   Seen held_{};
   double followed_rad_ = 0.0;  // angle of the sensor's side of its play
   int lag_stages_;
-  double lag_share_;                    // of the way to its input that each stage goes in a step
-  std::array<double, 3> lagged_rad_{};  // after each stage of the lag
-  double before_rad_ = 0.0, lagged_rad_s_ = 0.0;
+  double lag_share_;  // of the way to its input that each stage goes in a step
+  double velocity_lag_share_, prompt_speed_;
+  std::array<Seen, 3> lagged_{};  // after each stage of the lag
+  double lagged_rad_s_ = 0.0;
 };
 
 }  // namespace pmg::actuator

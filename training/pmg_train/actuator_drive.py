@@ -64,28 +64,28 @@ class AngleSensor:
     """Play, eccentricity, delay, quantum, lags, refresh period (src/actuator/angle_sensor.cpp)."""
 
     def __init__(self, p: dict, step_s: float, states: States):
-        self.p, self.step_s = p, step_s
+        self.p = p
         self.lagging, self.velocity_lagging = p["sensor.lag_s"] > 0, p["sensor.velocity_lag_s"] > 0
         self.lags, self.velocity_lags = has(p, "sensor.lag_s"), has(p, "sensor.velocity_lag_s")
         self.plays, self.quantises = has(p, "sensor.hysteresis_rad"), has(p, "sensor.quantum_rad")
         self.eccentric, self.elliptic = has(p, "sensor.eccentricity_rad"), has(p, "sensor.ellipticity_rad")
         self.refresh = Period(states, "refreshed_for", p["sensor.hold_s"], step_s)
-        prompt = ~self.lagging & ~self.velocity_lagging & (p["sensor.delay_s"] == 0) & self.refresh.every_step
-        self.prompt_speed = torch.where(prompt, p["sensor.angle_scale"], 0.0)
+        self.lag_share = step_s / (p["sensor.lag_s"] / p["sensor.lag_stages"] + step_s)
+        self.velocity_lag_share = step_s / (p["sensor.velocity_lag_s"] + step_s)
+        prompt = (1 - p["sensor.delay_s"] / step_s).clamp(min=0) * self.lag_share ** p["sensor.lag_stages"] * self.velocity_lag_share
+        self.prompt_speed = torch.where(self.refresh.every_step, p["sensor.angle_scale"] * prompt, 0.0)
         self.line = DelayLine(states, "shown", p["sensor.delay_s"], step_s, 2)
         self.held = states.new("seen", 2)
         self.followed_at = states.new("sensor_at")
         self.stages = [p["sensor.lag_stages"] > stage for stage in range(int(float(p["sensor.lag_stages"].max())))]
-        self.lagged = states.new("lagged", len(self.stages))
-        self.before, self.lagged_speed = states.new("sensed_before"), states.new("lagged_speed")
+        self.lagged, self.lagged_speed = states.new("lagged", len(self.stages), 2), states.new("lagged_speed")
 
     def reset(self, put, angle: torch.Tensor) -> None:
         put(self.followed_at, angle)
         shown = self._shown(angle)
         if self.line.used:
             put(self.line.past, torch.stack([shown, torch.zeros_like(shown)]))
-        put(self.lagged, self._quantised(shown).expand_as(self.lagged))
-        put(self.before, self._quantised(shown))
+        put(self.lagged, torch.stack([self._quantised(shown), torch.zeros_like(shown)]).expand_as(self.lagged))
         put(self.lagged_speed, torch.zeros_like(shown))
         self.refresh.reset(put)
 
@@ -96,21 +96,20 @@ class AngleSensor:
 
     def step(self, angle: torch.Tensor, speed: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
         """(angle and speed at the beginning of the step) => (what the drive works with)."""
-        p, h = self.p, self.step_s
+        p = self.p
         self.followed_at.copy_(self._followed(angle))
         shown, speed = self._shown(self.followed_at), p["sensor.angle_scale"] * speed
         if self.line.used:
             shown, speed = self.line.push(torch.stack([shown, speed]))
         seen = self._quantised(shown)
         if self.lags:
-            share = h / (p["sensor.lag_s"] / p["sensor.lag_stages"] + h)
+            late = torch.stack([seen, speed])
             for lagged, used in zip(self.lagged, self.stages, strict=True):
-                lagged.add_(share * (seen - lagged))
-                seen = torch.where(self.lagging & used, lagged, seen)
-            speed = torch.where(self.lagging, (seen - self.before) / h, speed)
-            self.before.copy_(seen)
+                lagged.add_(self.lag_share * (late - lagged))
+                late = torch.where(self.lagging & used, lagged, late)
+            seen, speed = late
         if self.velocity_lags:
-            self.lagged_speed.add_(h / (p["sensor.velocity_lag_s"] + h) * (speed - self.lagged_speed))
+            self.lagged_speed.add_(self.velocity_lag_share * (speed - self.lagged_speed))
             speed = torch.where(self.velocity_lagging, self.lagged_speed, speed)
         if self.refresh.used:
             self.held.copy_(torch.where(self.refresh.due(), torch.stack([seen, speed]), self.held))

@@ -70,7 +70,8 @@ class MotorTorque:
         most = self.p["drive.output_rate_limit_per_s"] * self.step_s
         given = torch.where(torch.isfinite(most), self.given + clamped(wish - self.given, most), wish)
         self.given.copy_(given)
-        return given, torch.where((given == wish) & (self.p["drive.torque_delay_s"] == 0), speed_gain, 0.0)
+        prompt = (1 - self.p["drive.torque_delay_s"] / self.step_s).clamp(min=0)
+        return given, torch.where(given == wish, prompt * speed_gain, 0.0)
 
     def _limited(self, torque, slope, duty, full, dq) -> tuple[torch.Tensor, torch.Tensor]:
         p = self.p
