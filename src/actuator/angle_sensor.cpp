@@ -29,7 +29,7 @@ AngleSensor::AngleSensor(const model::ActuatorParameters::Sensor& parameters, do
       lag_stages_(static_cast<int>(parameters.lag_stages)),
       lag_share_(step_s / (parameters.lag_s / parameters.lag_stages + step_s)),
       velocity_lag_share_(step_s / (parameters.velocity_lag_s + step_s)),
-      prompt_speed_(parameters.hold_s <= step_s ? parameters.angle_scale * std::max(0.0, 1.0 - delay_steps_) *
+      prompt_speed_(parameters.hold_s <= step_s ? parameters.angle_scale * share_within_step(delay_steps_) *
                                                       std::pow(lag_share_, lag_stages_) * velocity_lag_share_
                                                 : 0.0) {}
 

@@ -1,12 +1,16 @@
 // What went in a while ago.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
 namespace pmg::actuator {
 
 inline double between(double later, double earlier, double share) noexcept { return later + share * (earlier - later); }
+
+/// By how much what comes out after a delay of so many steps changes with what goes in within the same step.
+inline double share_within_step(double delay_steps) noexcept { return std::max(0.0, 1.0 - delay_steps); }
 
 /// Interpolates linearly between two stored steps. The result is the mean of a held value over the step, and smooth in
 /// the delay. T needs between(later, earlier, share).

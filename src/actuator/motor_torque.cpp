@@ -48,7 +48,7 @@ ControlLaw::Output MotorTorque::late(ControlLaw::Output output) noexcept {
   if (delays_) {
     past_.push(output.value);
     output.value = past_.at(delay_steps_);
-    output.speed_gain *= std::max(0.0, 1.0 - delay_steps_);
+    output.speed_gain *= share_within_step(delay_steps_);
   }
   if (output_rate_limited_) {
     const double most = parameters_.output_rate_limit_per_s * step_s_;

@@ -1,8 +1,10 @@
 // Next to none of an effect does what none of it does: past a jump, a search would not find from the one to the other.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <ostream>
 
 #include "calib/synthetic_bench.hpp"
 #include "calib/unknown.hpp"

@@ -72,9 +72,9 @@ class AngleSensor:
         self.refresh = Period(states, "refreshed_for", p["sensor.hold_s"], step_s)
         self.lag_share = step_s / (p["sensor.lag_s"] / p["sensor.lag_stages"] + step_s)
         self.velocity_lag_share = step_s / (p["sensor.velocity_lag_s"] + step_s)
-        prompt = (1 - p["sensor.delay_s"] / step_s).clamp(min=0) * self.lag_share ** p["sensor.lag_stages"] * self.velocity_lag_share
-        self.prompt_speed = torch.where(self.refresh.every_step, p["sensor.angle_scale"] * prompt, 0.0)
         self.line = DelayLine(states, "shown", p["sensor.delay_s"], step_s, 2)
+        prompt = self.line.within_step * self.lag_share ** p["sensor.lag_stages"] * self.velocity_lag_share
+        self.prompt_speed = torch.where(self.refresh.every_step, p["sensor.angle_scale"] * prompt, 0.0)
         self.held = states.new("seen", 2)
         self.followed_at = states.new("sensor_at")
         self.stages = [p["sensor.lag_stages"] > stage for stage in range(int(float(p["sensor.lag_stages"].max())))]

@@ -70,8 +70,7 @@ class MotorTorque:
         most = self.p["drive.output_rate_limit_per_s"] * self.step_s
         given = torch.where(torch.isfinite(most), self.given + clamped(wish - self.given, most), wish)
         self.given.copy_(given)
-        prompt = (1 - self.p["drive.torque_delay_s"] / self.step_s).clamp(min=0)
-        return given, torch.where(given == wish, prompt * speed_gain, 0.0)
+        return given, torch.where(given == wish, self.line.within_step * speed_gain, 0.0)
 
     def _limited(self, torque, slope, duty, full, dq) -> tuple[torch.Tensor, torch.Tensor]:
         p = self.p

@@ -39,6 +39,7 @@ class DelayLine:
         share = torch.where(ages == whole, 1 - (steps - whole), torch.where(ages == whole + 1, steps - whole, 0.0))
         self.shares = share.reshape(len(ages), *[1] * len(before), 1, states.shape[1])
         self.past = states.new(name, len(ages), *before)  # newest first
+        self.within_step = (1 - steps).clamp(min=0)  # by how much what push() gives changes with what goes in
 
     def push(self, now: torch.Tensor) -> torch.Tensor:
         """(now) => what came in a delay ago."""
