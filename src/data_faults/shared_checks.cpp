@@ -153,10 +153,14 @@ bool clear(const Tried& tried, const Demand& demand, const DataFaultOptions& o) 
          tried.gain > o.factor_deviations * tried.gain_deviation;
 }
 
-/// A small factor after which the model misses the readings by no more than repeats differ.
+/// A small factor after which the model misses the readings by no more than repeats differ, or by so much less that
+/// nothing else does that.
 bool exact(const Examined& e, const Groups& groups, const Tried& tried, const Demand& demand) {
   const DataFaultOptions& o = e.options();
-  return demand.small_if_exact && beyond(tried.factor, o.least_exact_factor) && e.floors(tried.fit) < o.exact_floors &&
+  const bool overwhelming =
+      tried.gain > std::log(o.overwhelming_gain) && tried.gain > o.factor_deviations * tried.gain_deviation;
+  return demand.small_if_exact && beyond(tried.factor, o.least_exact_factor) &&
+         (overwhelming || e.floors(tried.fit) < o.exact_floors) &&
          evidence(tried.fit, groups.without()) > o.exact_evidence;
 }
 
@@ -191,8 +195,10 @@ Odd odd_one(const Examined& e, const Groups& groups, const Demand& demand) {
   if (believed.empty()) return found;
   const QuickFit best =
       std::ranges::min_element(believed, {}, [](const Odd& one) { return one.tried.fit.loss_with_prior; })->tried.fit;
-  std::erase_if(believed,
-                [&](const Odd& one) { return evidence(best, one.tried.fit) > std::pow(o.factor_deviations, 2); });
+  // Where both leave no more than repeats differ by, the better fit is the quick model's form.
+  std::erase_if(believed, [&](const Odd& one) {
+    return evidence(best, one.tried.fit) > std::pow(o.factor_deviations, 2) && !exact(e, groups, one.tried, demand);
+  });
   // Either of two halves may be odd where the drive's gain is free: the other is as that is known. Then the best fit.
   found = *std::ranges::min_element(believed, {}, [&](const Odd& one) {
     return std::pair(gain_off(e, one.tried.fit.model), one.tried.fit.loss_with_prior);

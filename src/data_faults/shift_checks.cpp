@@ -155,7 +155,9 @@ std::vector<DataFault> common_shift(const Examined& e) {
   const double lag_s = fitting::median(lags_s), delay_s = e.fitted().model.actuator.command.delay_s;
   const bool plain = fitting::median(gains) > std::log(e.options().shift_gain);
   const bool late = plain && delay_s + lag_s > e.options().longest_delay_s;
-  const bool early = lag_s < -0.5 * e.sample_s();
+  // A fit that misses more than repeats and took all delay away may hide readings that are early.
+  const bool hidden = delay_s < 0.5 * e.sample_s() && e.floors(e.fitted()) > e.options().exact_floors;
+  const bool early = lag_s < -0.5 * e.sample_s() || hidden;
   const double whole_s = late ? delay_s + lag_s : early ? -early_s(e, lag_s, plain && -lag_s > least_shift_s(e)) : 0.0;
   if (std::abs(whole_s) < least_shift_s(e)) return {};
   const std::string column = bench::column_name(Column::kPosition, e.linear());

@@ -242,6 +242,15 @@ Extension EffectSearch::without_special_cases(Extension current) const {
   return current;
 }
 
+Extension EffectSearch::in_special_cases(Extension current) const {
+  for (const std::string& name : std::vector<std::string>(current.effects)) {
+    if (measured(name) != nullptr) continue;
+    std::optional<Extension> special = as_special_case(current, name);
+    if (special && compared(*special, current).deviations < options_.clearly_deviations) current = *std::move(special);
+  }
+  return current;
+}
+
 /// True if the effect is convincing beside the extension's others.
 bool EffectSearch::stands(const Extension& extension, const std::string& effect) {
   return objection(trial(refit_without(extension, effect), extension, effect)).empty();
@@ -320,7 +329,8 @@ Extension EffectSearch::completed(Extension current) {
     if (!more) break;
     current = in_best_forms(*std::move(more));
   }
-  return in_best_forms(with_simpler_forms(in_best_forms(exchanged(without_special_cases(std::move(current))))));
+  current = in_special_cases(without_special_cases(std::move(current)));
+  return in_best_forms(with_simpler_forms(in_best_forms(exchanged(std::move(current)))));
 }
 
 Extension EffectSearch::leave_out(const Extension& from, const std::string& effect, const std::string& why) {

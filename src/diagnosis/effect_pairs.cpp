@@ -60,24 +60,16 @@ std::string EffectSearch::objection_to_pair(const Extension& pair, const std::st
 }
 
 std::optional<Extension> EffectSearch::as_special_case(const Extension& from, const std::string& effect) const {
-  const std::vector<std::string> strengths = effects::strengths(effect, from.forms);
-  const bool ended_there = std::any_of(strengths.begin(), strengths.end(), [&](const std::string& parameter) {
-    return calib::value(from.fitted.model, parameter) == calib::value(base_.model, parameter);
-  });
-  if (!ended_there) return std::nullopt;
-  const std::vector<std::string>& known = effects::form_of(effect, from.forms).parameters;
   std::optional<Extension> best;
   for (const std::string& name : effects::effect(effect).contains) {
-    if (effects::contains(from.effects, name)) continue;
+    if (effects::contains(from.effects, name) || was_left_out(name)) continue;
     Extension special{from.effects, {}, {}, from.forms, {}};
     std::replace(special.effects.begin(), special.effects.end(), effect, name);
     special.forms.erase(effect);
     const std::vector<effects::Form>& forms = effects::effect(name).forms;
     for (std::size_t f = 0; f < forms.size(); ++f) {
-      const std::vector<std::string>& needed = forms[f].parameters;
-      if (!std::all_of(needed.begin(), needed.end(), [&](const auto& one) { return effects::contains(known, one); }))
-        continue;
       special.forms[name] = f;
+      if (!effects::is_nested(name, special.forms, effect, from.forms)) continue;
       calib::JointModel start = fits_.without(from.fitted.model, effect, special.effects, special.forms);
       for (const effects::FixedValue& fixed : forms[f].fixed) calib::set(start, fixed.parameter, fixed.value);
       special.fitted =
@@ -126,10 +118,7 @@ std::optional<Extension> EffectSearch::with_pair(const Extension& current) {
     return compared(current, one).log_gain > 0.0 && (!best || compared(*best, one).log_gain > 0.0);
   };
   for (const Extension& few : fitted) {
-    Extension pair = extend(few.effects, few.forms, few.fitted.model);
-    for (const std::string& name : {newest(pair).first, newest(pair).second}) {
-      if (std::optional<Extension> special = as_special_case(pair, name)) pair = *std::move(special);
-    }
+    const Extension pair = in_special_cases(extend(few.effects, few.forms, few.fitted.model));
     const auto [first, second] = newest(pair);
     if (better(pair) && objection_to_pair(pair, first, second).empty()) {
       best = pair;

@@ -100,15 +100,17 @@ class EffectSearch {
   /// Effects that were chosen and left again, with the reason.
   const std::vector<std::pair<std::string, std::string>>& left_out() const { return left_out_; }
 
-  /// (extension, its effect) => (the effect's special case in its place, where the effect ended at it, fitted; in the
-  /// form that explains the most of those of which the effect has all parameters). A play of zero is a shaft that
-  /// bends.
+  /// (extension, its effect) => (the effect's special case in its place, fitted; in the form that explains the most of
+  /// those of which the effect has all parameters; nothing if it has none). A play of zero is a shaft that bends.
   std::optional<Extension> as_special_case(const Extension& from, const std::string& effect) const;
 
   /// (extension) => (the same without effects of which another one has every number, where that one does their part,
   /// too). Play takes the place of the soft shaft that stood for it, with the sensor on the side where that had it.
   /// Costs a fit of each form for each such pair.
   Extension without_special_cases(Extension current) const;
+  /// (extension) => (the same with an effect's special case in its place where the effect is not clearly better than
+  /// that). Costs a fit for each effect that has one.
+  Extension in_special_cases(Extension current) const;
 
   /// True if another effect has every number of this effect's form and a further one, and explains less beside it than
   /// a second effect must: friction that differs a little by direction is the friction.
