@@ -144,23 +144,26 @@ struct Demand {
 struct Odd {
   int group = -1;
   Tried tried;
+  bool sure = false;                   ///< however small its factor is
   std::vector<std::string> instead{};  ///< other groups whose factor explains the runs as well, as sentences
 };
 
+/// True if the factor surely divides the error of its runs by so much.
+bool divides_error(const Tried& tried, double by, const DataFaultOptions& o) {
+  return tried.gain > std::log(by) && tried.gain > o.factor_deviations * tried.gain_deviation;
+}
+
 /// Clear by its size, whatever else the joint does.
 bool clear(const Tried& tried, const Demand& demand, const DataFaultOptions& o) {
-  return beyond(tried.factor, demand.least_factor) && tried.gain > std::log(demand.least_gain) &&
-         tried.gain > o.factor_deviations * tried.gain_deviation;
+  return beyond(tried.factor, demand.least_factor) && divides_error(tried, demand.least_gain, o);
 }
 
 /// A small factor after which the model misses the readings by no more than repeats differ, or by so much less that
 /// nothing else does that.
-bool exact(const Examined& e, const Groups& groups, const Tried& tried, const Demand& demand) {
+bool sure(const Examined& e, const Groups& groups, const Tried& tried, const Demand& demand) {
   const DataFaultOptions& o = e.options();
-  const bool overwhelming =
-      tried.gain > std::log(o.overwhelming_gain) && tried.gain > o.factor_deviations * tried.gain_deviation;
   return demand.small_if_exact && beyond(tried.factor, o.least_exact_factor) &&
-         (overwhelming || e.floors(tried.fit) < o.exact_floors) &&
+         (divides_error(tried, o.overwhelming_gain, o) || e.floors(tried.fit) < o.exact_floors) &&
          evidence(tried.fit, groups.without()) > o.exact_evidence;
 }
 
@@ -189,15 +192,15 @@ Odd odd_one(const Examined& e, const Groups& groups, const Demand& demand) {
     }
     if (std::abs(std::log(together[g]) - fitting::median(others)) < 0.5 * std::log(least_factor)) continue;
     const Tried tried = groups.with({g});
-    if (!clear(tried, demand, o) && !exact(e, groups, tried, demand)) continue;
-    believed.push_back({static_cast<int>(g), tried});
+    const Odd odd{static_cast<int>(g), tried, sure(e, groups, tried, demand)};
+    if (odd.sure || clear(tried, demand, o)) believed.push_back(odd);
   }
   if (believed.empty()) return found;
   const QuickFit best =
       std::ranges::min_element(believed, {}, [](const Odd& one) { return one.tried.fit.loss_with_prior; })->tried.fit;
-  // Where both leave no more than repeats differ by, the better fit is the quick model's form.
+  // Where both are sure, the better fit is the quick model's form.
   std::erase_if(believed, [&](const Odd& one) {
-    return evidence(best, one.tried.fit) > std::pow(o.factor_deviations, 2) && !exact(e, groups, one.tried, demand);
+    return !one.sure && evidence(best, one.tried.fit) > std::pow(o.factor_deviations, 2);
   });
   // Either of two halves may be odd where the drive's gain is free: the other is as that is known. Then the best fit.
   found = *std::ranges::min_element(believed, {}, [&](const Odd& one) {
@@ -210,7 +213,6 @@ Odd odd_one(const Examined& e, const Groups& groups, const Demand& demand) {
   }
   const auto group = static_cast<std::size_t>(found.group);
   // What all groups share is physics, or another fault.
-  const bool leaves_nothing = exact(e, groups, found.tried, demand);
   if (groups.common().fit.loss - found.tried.fit.loss < groups.share(group) * std::log(o.better_than_common)) return {};
   if (demand.known_factors_count && firmware_factor(found.tried.factor, o.unit_tolerance) &&
       found.tried.gain > std::log(o.clear_gain))
@@ -221,8 +223,8 @@ Odd odd_one(const Examined& e, const Groups& groups, const Demand& demand) {
   // The factor alone is one of the fits that have the effect as well.
   if (beside.fit.loss > found.tried.fit.loss) beside = physics.judged(found.tried.fit, {group});
   if (clear(beside, demand, o))
-    return {found.group, beside, found.instead};  // the better model knows the factor better
-  if (leaves_nothing && evidence(found.tried.fit, physics.without()) > o.exact_evidence) return found;
+    return {found.group, beside, found.sure, found.instead};  // the better model knows the factor better
+  if (found.sure && evidence(found.tried.fit, physics.without()) > o.exact_evidence) return found;
   return {};
 }
 
@@ -353,8 +355,7 @@ std::optional<std::pair<double, Tried>> apart(const Examined& e, const calib::Jo
     const std::vector<double> with = errors_with(e, one, model, of, one.log_factor);
     for (std::size_t i = 0; i < gains.size(); ++i) gains[i] -= with[i];
     std::tie(tried.gain, tried.gain_deviation) = mean_and_deviation(gains);
-    if (tried.gain > std::log(least_gain) && tried.gain > o.factor_deviations * tried.gain_deviation)
-      return std::pair(one.value, tried);
+    if (divides_error(tried, least_gain, o)) return std::pair(one.value, tried);
   }
   return std::nullopt;
 }
